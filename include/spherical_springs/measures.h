@@ -1,0 +1,58 @@
+// What a system reports about itself: energies, errors, bounds.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "spherical_springs/integrator.h"
+#include "spherical_springs/state.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+struct Energies {
+  PotentialEnergies by_kind;  ///< [J]
+  double kinetic = 0;         ///< [J]
+  double dissipated = 0;      ///< since the account began [J]
+  double potential() const { return by_kind.total(); }
+  double total() const { return kinetic + potential(); }
+};
+
+Energies energies(const System& system, const State& state);
+
+/// What is conserved, and by how much it has changed since the account began. For many threads.
+class Account {
+ public:
+  Account(const System& system, const State& state);
+
+  /// |total + dissipated - its value at the beginning| / the largest total since.
+  double energyError(const Energies& now);
+
+  /// |L - its value at the beginning| / the largest sum of |m omega| since; 0 in a scene that does
+  /// not conserve it.
+  double angularMomentumError(const System& system, const State& state);
+
+ private:
+  const double energy_;
+  const Vector3 momentum_;
+  std::mutex mutex_;  // guards what follows
+  double largest_total_, largest_momentum_;
+};
+
+/// Largest torque of the springs on a particle that is not pinned [N m].
+double maxTorque(const System& system, const State& state);
+
+/// max | |p| - 1 |
+double normError(const State& state);
+
+/// A time step [s] that a scheme of the composition kind bears here: 2 / (highest frequency), with
+/// the frequency bounded by Gershgorin's circles of the springs' stiffness; 0 where nothing
+/// vibrates.
+double stableTimeStep(const System& system, const Points& positions);
+
+/// Estimated error [rad] of one step from `state`, by the difference from two steps of half the
+/// length.
+double localError(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
+                  double time_step, const State& state);
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,27 @@
+// Ranges of allowed values, and the one way in which a value outside is refused.
+#pragma once
+
+#include <string>
+
+namespace spherical_springs::core {
+
+struct Range {
+  double low, high;
+  const char* allowed;  ///< the range in words, for messages
+  bool open_low = false;
+
+  bool contains(double value) const {
+    return (open_low ? value > low : value >= low) && value <= high;  // false for NaN
+  }
+};
+
+/// Magnitudes far beyond any scene and far within what products of a few of them can hold.
+constexpr double kSmallest = 1e-30, kLargest = 1e30;
+
+/// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
+std::string toText(double value);
+
+/// @throw std::invalid_argument "`field` is `value`; allowed: ..." when `value` is outside.
+void requireInside(const Range& range, double value, const char* field);
+
+}  // namespace spherical_springs::core

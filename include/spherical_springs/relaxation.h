@@ -1,0 +1,54 @@
+// Relaxation: from where the particles are to an equilibrium of the springs.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "spherical_springs/sphere.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+enum class RelaxationMethod {
+  newton,   ///< Newton's method on the sphere, with a sparse Cholesky factorisation
+  dynamics  ///< damped stepping, by the fast inertial relaxation engine (FIRE)
+};
+
+/// `name`: "newton", "dynamics", or empty for the default, newton.
+/// @throw std::invalid_argument for any other name.
+RelaxationMethod relaxationMethod(const std::string& name);
+
+struct RelaxationProgress {
+  const Points& positions;  ///< the best so far
+  double max_torque;        ///< there, on a free particle [N m]
+  double fraction;          ///< of the way, from 0 to 1, by the logarithm of the torque
+};
+
+struct RelaxationOptions {
+  RelaxationMethod method = RelaxationMethod::newton;
+  double tolerance = 0;  ///< largest torque left on a free particle [N m]; 0: the default
+  double max_time = 0;   ///< wall [s]; 0: no limit
+  /// Called after every iteration; returning false ends the relaxation.
+  std::function<bool(const RelaxationProgress&)> go_on = [](const auto&) { return true; };
+};
+
+struct RelaxationResult {
+  Points positions;
+  bool converged = false;  ///< the torque is within the tolerance, at a minimum of the energy
+  std::uint32_t iterations = 0;
+  double energy_before = 0, energy_after = 0;  ///< potential [J]
+  double max_torque = 0;                       ///< on a free particle [N m]
+  std::string message;                         ///< why it ended
+};
+
+/// 1e-9 of the largest stiffness [N m].
+double defaultTolerance(const System& system);
+
+/// Moves free particles from `positions` to a minimum of the potential energy. A start on a saddle
+/// or a maximum is left, the same way every run.
+/// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+RelaxationResult relax(const System& system, const Points& positions,
+                       const RelaxationOptions& options);
+
+}  // namespace spherical_springs::core

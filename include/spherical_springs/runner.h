@@ -1,0 +1,102 @@
+// One simulation for many callers at once.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+#include "spherical_springs/relaxation.h"
+#include "spherical_springs/simulation.h"
+
+namespace spherical_springs::core {
+
+/// A mutex that lets waiting callers in before the last holder comes back: a loop that takes it
+/// again and again cannot starve the others.
+class FairMutex {
+ public:
+  void lock() {
+    const std::lock_guard<std::mutex> turn(next_);
+    held_.lock();
+  }
+  void unlock() { held_.unlock(); }
+
+ private:
+  std::mutex next_, held_;
+};
+
+enum class Activity { none, stepping, relaxing };
+
+/// Steps and relaxes a simulation, and lets others read it meanwhile: stepping pauses for them
+/// every few milliseconds, a relaxation works on a copy and shows how far it has come. Changes are
+/// refused until either ends. All functions may be called from any thread.
+class Runner {
+ public:
+  Runner(const Simulation::Settings& settings, bool running)
+      : simulation_(settings), running_(running) {}
+
+  /// `use(simulation)` for one that only looks; returns what it returns.
+  template <class Use>
+  auto read(const Use& use) {
+    const std::lock_guard<FairMutex> lock(mutex_);
+    return use(simulation_);
+  }
+
+  /// `change(simulation)`; returns what it returns.
+  /// @throw std::runtime_error while a step or relaxation is under way, and what `change` throws.
+  template <class Change>
+  auto change(const Change& change) {
+    const std::lock_guard<FairMutex> lock(mutex_);
+    requireIdle();
+    return change(simulation_);
+  }
+
+  /// @throw std::runtime_error while a step or relaxation is under way.
+  void setRunning(bool running);
+
+  /// Up to `steps` steps in the time that `wall_time` [s] allows, if running and idle.
+  /// @return how many were done.
+  std::uint64_t advance(std::uint64_t steps, double wall_time);
+
+  /// Exactly `steps` steps, unless cancelled.
+  /// @return how many were done. @throw std::runtime_error unless paused and idle.
+  std::uint64_t step(std::uint64_t steps);
+
+  /// @throw std::runtime_error while another is under way, std::invalid_argument for bad options,
+  /// with nothing changed.
+  RelaxationResult relax(RelaxationOptions options);
+
+  /// Ends a step or relaxation under way at its best state so far, at rest.
+  /// @return whether there was one.
+  bool cancel();
+
+  /// How things stand, to be measured at leisure without holding anything up.
+  struct Snapshot {
+    State state;
+    std::shared_ptr<const System> system;
+    std::shared_ptr<Account> account;
+    bool running;
+    Activity activity;
+    double relax_progress;  ///< 0 to 1 while relaxing
+    double step_wall_time;  ///< mean of a step lately [s]
+  };
+  Snapshot snapshot();
+
+ private:
+  class Busy;
+
+  void requireIdle() const;
+  std::uint64_t stepForASlice(std::uint64_t most);
+
+  FairMutex mutex_;  // guards what follows, but for the atomic
+  Simulation simulation_;
+  bool running_;
+  Activity activity_ = Activity::none;
+  double relax_progress_ = 0;
+  double step_wall_time_ = 0;
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace spherical_springs::core

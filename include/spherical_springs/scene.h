@@ -1,0 +1,94 @@
+// The scene as a person describes it. Everything is checked here, at the door, and nowhere after.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "spherical_springs/id_table.h"
+#include "spherical_springs/range.h"
+#include "spherical_springs/sphere.h"
+#include "spherical_springs/springs/kinds.h"
+
+namespace spherical_springs::core {
+
+struct Particle {
+  Vector3 position = Vector3::Zero();          ///< any finite non-zero vector before the door
+  Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s]
+  double mass = 0;                             ///< [kg]; 0 means 1 before the door
+  double damping = 0;                          ///< [N m s/rad]
+  bool pinned = false;
+
+  template <class P, class Visitor>
+  static void visitFields(P& particle, Visitor&& visit) {
+    visit("mass", particle.mass,
+          Range{kSmallest, kLargest, "0 (meaning 1), or 1e-30 to 1e30 [kg]"});
+    visit("damping", particle.damping, Range{0, kLargest, "0 to 1e30 [N m s/rad]"});
+  }
+};
+
+struct SceneLimits {
+  std::size_t particles = 20'000'000;
+  std::size_t springs = 100'000'000;
+};
+
+/// Particles and springs under their ids. Each changing function checks the whole request first and
+/// throws std::invalid_argument, which names item, field, value and what is allowed, before
+/// anything is changed. Particles' places here are those at which they were last added or set.
+class Scene {
+ public:
+  explicit Scene(SceneLimits limits = {}) : limits_(limits) {}
+
+  /// A whole scene under ids of the caller's choice, each list rising. Springs that ask for it take
+  /// their rest values from the particles' positions.
+  /// @throw std::invalid_argument as the changing functions do.
+  Scene(SceneLimits limits, const std::vector<std::uint32_t>& particle_ids,
+        std::vector<Particle> particles, const SpringIds& spring_ids, SpringLists springs);
+
+  const IdTable<Particle>& particles() const { return particles_; }
+  template <class Spring>
+  const IdTable<Spring>& springs() const {
+    return springs_.get<Spring>();
+  }
+  std::size_t springCount() const;
+
+  /// @return the new ids.
+  std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
+
+  /// @return the indices of the particles that were set.
+  std::vector<std::size_t> setParticles(const std::vector<std::uint32_t>& ids,
+                                        std::vector<Particle> particles);
+
+  struct Removal {
+    std::vector<bool> particles;  ///< by index before the removal
+    std::size_t springs = 0;
+  };
+  /// Removes particles and every spring that joins one of them.
+  Removal removeParticles(const std::vector<std::uint32_t>& ids);
+
+  /// `positions`: of the particles at present, one column each in the order of ids, from which
+  /// springs that ask for it take their rest values.
+  SpringIds addSprings(SpringLists springs, const Points& positions);
+  void setSprings(const SpringIds& ids, SpringLists springs, const Points& positions);
+  void removeSprings(const SpringIds& ids);
+
+  /// Puts the particles elsewhere: one column each, unit positions and the angular velocities
+  /// normal to them, as stepping leaves them.
+  void place(const Points& positions, const Points& angular_velocities);
+
+  /// Takes every particle and spring away. Their ids are not given again.
+  void clear();
+
+  /// Ids below those that `earlier` has given will not be given here.
+  void reserveIdsOf(const Scene& earlier);
+
+ private:
+  void checkSprings(SpringLists& springs, const Points& positions) const;
+
+  SceneLimits limits_;
+  IdTable<Particle> particles_;
+  PerKind<IdTable> springs_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,73 @@
+// A scene that lives: what a person described, and where it has come to since.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "spherical_springs/integrator.h"
+#include "spherical_springs/measures.h"
+#include "spherical_springs/scene.h"
+#include "spherical_springs/scene_file.h"
+#include "spherical_springs/state.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+/// For one thread at a time. Changing functions throw what Scene's throw, and then change nothing;
+/// each begins the account of energy anew.
+class Simulation {
+ public:
+  struct Settings {
+    const SplittingScheme* scheme = &splittingScheme("verlet");
+    double time_step = 0.001;  ///< [s]
+    System::Options system;
+    SceneLimits limits;
+  };
+
+  explicit Simulation(const Settings& settings) : settings_(settings), scene_(settings.limits) {
+    placeAtStart();
+  }
+
+  std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
+  void setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
+  std::size_t removeParticles(const std::vector<std::uint32_t>& ids);  ///< @return springs removed
+  SpringIds addSprings(SpringLists springs);
+  void setSprings(const SpringIds& ids, SpringLists springs);
+  void removeSprings(const SpringIds& ids);
+
+  void clear();               ///< No particles, no springs, time 0.
+  void reset();               ///< Every particle where it was last added or set, time 0.
+  void load(SceneFile file);  ///< In place of the present scene.
+
+  /// One step of the settings' time step.
+  void step();
+
+  /// Puts the particles, at rest, where a relaxation has brought them.
+  void settle(const Points& positions);
+
+  /// Puts back an earlier state of the same scene, and the account that it belongs to.
+  void restore(State state, std::shared_ptr<Account> account);
+
+  const Settings& settings() const { return settings_; }
+  const Scene& scene() const { return scene_; }
+  const State& state() const { return state_; }
+  Scene presentScene() const;  ///< with the particles where they are now
+
+  std::shared_ptr<const System> system();
+  std::shared_ptr<Account> account();
+
+ private:
+  void placeAtStart();
+  void changed();
+
+  Settings settings_;
+  Scene scene_;
+  State state_;
+  // Made when first needed after a change.
+  std::shared_ptr<const System> system_;
+  std::unique_ptr<Integrator> integrator_;
+  std::shared_ptr<Account> account_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "spherical_springs/range.h"
+#include "spherical_springs/springs/condition.h"
+
+namespace spherical_springs::core {
+
+/// Angle spring (report, section 3.1): C = angle between two particles - rest_angle.
+struct AngleSpring {
+  static constexpr std::size_t kParticles = 2;
+  static constexpr const char* kTable = "angle_springs";
+
+  std::array<std::uint32_t, kParticles> particles{};
+  double rest_angle = 0;  ///< [rad]
+  double stiffness = 0;   ///< [J/rad^2]
+  double damping = 0;     ///< [N m s/rad]
+  bool at_rest = false;   ///< true: rest_angle is ignored and the present angle is taken
+
+  template <class Spring, class Visitor>
+  static void visitFields(Spring& spring, Visitor&& visit) {
+    visit("rest_angle", spring.rest_angle, Range{0, kPi, "0 to pi [rad]"});
+    visit("stiffness", spring.stiffness,
+          Range{kSmallest, kLargest, "above 0, from 1e-30 to 1e30 [J/rad^2]"});
+    visit("damping", spring.damping, Range{0, kLargest, "0 to 1e30 [N m s/rad]"});
+  }
+};
+
+/// Takes the present angle as the rest angle.
+void rest(AngleSpring& spring, const std::array<Vector3, 2>& points);
+
+/// At coinciding or antipodal points the gradient is along the fixed axis of `arc`.
+Condition<2> condition(const AngleSpring& spring, const std::array<Vector3, 2>& points);
+
+TangentCondition<2> tangentCondition(const AngleSpring& spring,
+                                     const std::array<Vector3, 2>& points,
+                                     const std::array<TangentFrame, 2>& frames,
+                                     Curvature curvature);
+
+}  // namespace spherical_springs::core

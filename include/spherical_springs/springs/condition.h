@@ -1,0 +1,37 @@
+// What every kind of spring answers: the condition it wants to be zero, and its derivatives.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+#include "spherical_springs/sphere.h"
+
+namespace spherical_springs::core {
+
+/// Condition C of a spring on N particles (report, section 3), with energy stiffness C^2 / 2.
+template <std::size_t N>
+struct Condition {
+  double value;  ///< C [rad or sr]
+  /// p x grad C for each particle: the rate of C under a rotation of the particle. The torque is
+  /// -stiffness C gradient (report's equation 2, in rotation vectors instead of half of them).
+  std::array<Vector3, N> gradient;
+};
+
+/// Two unit vectors that make a right-handed frame with a point: columns x and y = p x x.
+using TangentFrame = Eigen::Matrix<double, 3, 2>;
+
+/// Whether the second derivatives H of a condition are exact, or altered so that C H, and with it
+/// the spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive semidefinite.
+enum class Curvature { exact, definite };
+
+/// Derivatives of the condition in tangent coordinates: particle i moves along frame_i * d_i and
+/// back onto the sphere.
+template <std::size_t N>
+struct TangentCondition {
+  double value;
+  std::array<Eigen::Vector2d, N> gradient;
+  std::array<std::array<Eigen::Matrix2d, N>, N> hessian;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "spherical_springs/range.h"
+#include "spherical_springs/springs/condition.h"
+
+namespace spherical_springs::core {
+
+/// Oriented-angle spring (report, section 3.3, an empty heading; section 6 says what it is for):
+/// C = sign * (angle between the first two particles) - rest_angle, where the sign is a smooth step
+/// of width `width` in the triple product of the three particles.
+struct OrientedAngleSpring {
+  static constexpr std::size_t kParticles = 3;
+  static constexpr const char* kTable = "oriented_angle_springs";
+
+  std::array<std::uint32_t, kParticles> particles{};
+  double rest_angle = 0;  ///< [rad]; negative: at rest when seen clockwise
+  double stiffness = 0;   ///< [J/rad^2]
+  double damping = 0;     ///< [N m s/rad]
+  double width = 0;       ///< of the change of sign, in units of the triple product; 0: the default
+  bool at_rest = false;   ///< true: rest_angle is ignored and the present signed angle is taken
+
+  template <class Spring, class Visitor>
+  static void visitFields(Spring& spring, Visitor&& visit) {
+    visit("rest_angle", spring.rest_angle, Range{-kPi, kPi, "-pi to pi [rad]"});
+    visit("stiffness", spring.stiffness,
+          Range{kSmallest, kLargest, "above 0, from 1e-30 to 1e30 [J/rad^2]"});
+    visit("damping", spring.damping, Range{0, kLargest, "0 to 1e30 [N m s/rad]"});
+    visit("width", spring.width, Range{0, 1, "0 (the default) to 1"});
+  }
+};
+
+/// The width in use: `width`, or 0.2 sin^2(rest_angle / 2) where that is 0. Below 1e-12, near the
+/// rounding of the triple product, the change of sign is a sharp step, reported as 0.
+double effectiveWidth(const OrientedAngleSpring& spring);
+
+/// Takes the present signed angle as the rest angle; a default width is then that of the present
+/// angle, and is written into the spring.
+void rest(OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
+
+Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
+
+TangentCondition<3> tangentCondition(const OrientedAngleSpring& spring,
+                                     const std::array<Vector3, 3>& points,
+                                     const std::array<TangentFrame, 3>& frames,
+                                     Curvature curvature);
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,111 @@
+// The system compiled from a scene: arrays by kind, only the kinds present.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "spherical_springs/scene.h"
+#include "spherical_springs/sphere.h"
+#include "spherical_springs/springs/kinds.h"
+
+namespace spherical_springs::core {
+
+/// Whose velocity a spring's damping acts on: that of the whole spring, dC/dt, or each particle's
+/// own part of it (report's equation 5, with c = k_d / 4).
+enum class SpringDamping { relative, own };
+
+template <class Spring>
+struct EnergyOf {
+  double joules = 0;
+};
+
+/// Energy stored in the springs of each kind.
+struct PotentialEnergies : PerKind<EnergyOf> {
+  double total() const;
+};
+
+/// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
+/// of their ids, and springs name particles by index.
+class System {
+ public:
+  struct Options {
+    SpringDamping spring_damping = SpringDamping::relative;
+    int threads = 1;  ///< results do not depend on it, to the last bit
+  };
+
+  System(const Scene& scene, Options options);
+
+  Eigen::Index particleCount() const { return masses_.size(); }
+  const Eigen::VectorXd& masses() const { return masses_; }
+  const Eigen::VectorXd& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
+  bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
+  bool damped() const { return particles_damped_ || springs_damped_; }
+  /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
+  bool conservesAngularMomentum() const;
+  double largestStiffness() const;
+  int threads() const { return options_.threads; }
+
+  /// Springs of a kind, whose `particles` are indices.
+  template <class Spring>
+  const SpringList<Spring>& springs() const {
+    return springs_.get<Spring>();
+  }
+
+  /// What one evaluation at some positions leaves for the next use of it; reused to save memory.
+  struct Workspace {
+    std::vector<Vector3> end_torques;    ///< of each end of each spring
+    std::vector<Vector3> end_gradients;  ///< likewise; only in a scene with damped springs
+    Points torques;                      ///< of each particle [N m]
+  };
+
+  /// Torques of the springs on each particle, damping apart, into `workspace`.
+  void evaluate(const Points& positions, Workspace& workspace) const;
+
+  /// The flow of all damping over `duration` [s] at the positions last evaluated: viscous damping
+  /// and that of each spring, each by its exact flow, one after another in the order of the springs
+  /// or, `backward`, in the opposite one, so that a pair of both is symmetric in time.
+  /// @return the energy taken out [J].
+  double damp(const Workspace& workspace, double duration, bool backward,
+              Points& angular_velocities) const;
+
+  PotentialEnergies potential(const Points& positions) const;
+  double kinetic(const Points& angular_velocities) const;
+
+  /// Sum of m omega [kg m^2 rad/s].
+  Vector3 angularMomentum(const Points& angular_velocities) const;
+
+  /// Positions of the particles of a spring.
+  template <class Spring>
+  static std::array<Vector3, Spring::kParticles> points(const Spring& spring,
+                                                        const Points& positions) {
+    std::array<Vector3, Spring::kParticles> result;
+    for (std::size_t j = 0; j < Spring::kParticles; ++j) {
+      result[j] = positions.col(spring.particles[j]);
+    }
+    return result;
+  }
+
+ private:
+  template <class Spring>
+  struct DampedSprings {
+    std::vector<std::uint32_t> springs;
+  };
+
+  double dampViscously(double duration, Points& angular_velocities) const;
+  double dampSprings(const Workspace& workspace, double duration, bool backward,
+                     Points& angular_velocities) const;
+
+  Options options_;
+  Eigen::VectorXd masses_, inverse_masses_, damping_;
+  bool particles_damped_ = false, springs_damped_ = false, any_pinned_ = false;
+  SpringLists springs_;
+  PerKind<DampedSprings> damped_springs_;
+  std::size_t end_count_ = 0;
+  // The ends of springs at each particle: those of particle i are at ends_[first_end_[i]] and on,
+  // so that torques are summed in the same order however many threads do it.
+  std::vector<std::uint32_t> first_end_, ends_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,120 @@
+#include "conversion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherical_springs {
+namespace {
+
+template <class Message>
+core::Vector3 toVector(const Message& message) {
+  return {message.x, message.y, message.z};
+}
+
+template <class Message>
+void setVector(const core::Vector3& vector, Message& message) {
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+}
+
+/// The fields that springs of all kinds share.
+template <class From, class To>
+void copyCommon(const From& from, To& to) {
+  std::copy(from.particles.begin(), from.particles.end(), to.particles.begin());
+  to.stiffness = from.stiffness;
+  to.damping = from.damping;
+  to.at_rest = from.at_rest;
+}
+
+template <class To, class From>
+To angleSpring(const From& from) {
+  To to;
+  copyCommon(from, to);
+  to.rest_angle = from.rest_angle;
+  return to;
+}
+
+template <class To, class From>
+To solidAngleSpring(const From& from) {
+  To to;
+  copyCommon(from, to);
+  to.rest_solid_angle = from.rest_solid_angle;
+  return to;
+}
+
+template <class To, class From>
+To orientedAngleSpring(const From& from) {
+  To to;
+  copyCommon(from, to);
+  to.rest_angle = from.rest_angle;
+  to.width = from.width;
+  return to;
+}
+
+}  // namespace
+
+core::Particle fromMessage(const Particle& message) {
+  core::Particle particle;
+  particle.position = toVector(message.position);
+  particle.angular_velocity = toVector(message.angular_velocity);
+  particle.mass = message.mass;
+  particle.damping = message.damping;
+  particle.pinned = message.pinned;
+  return particle;
+}
+
+Particle toMessage(const core::Particle& particle) {
+  Particle message;
+  setVector(particle.position, message.position);
+  setVector(particle.angular_velocity, message.angular_velocity);
+  message.mass = particle.mass;
+  message.damping = particle.damping;
+  message.pinned = particle.pinned;
+  return message;
+}
+
+core::AngleSpring fromMessage(const AngleSpring& message) {
+  return angleSpring<core::AngleSpring>(message);
+}
+AngleSpring toMessage(const core::AngleSpring& spring) { return angleSpring<AngleSpring>(spring); }
+
+core::SolidAngleSpring fromMessage(const SolidAngleSpring& message) {
+  return solidAngleSpring<core::SolidAngleSpring>(message);
+}
+SolidAngleSpring toMessage(const core::SolidAngleSpring& spring) {
+  return solidAngleSpring<SolidAngleSpring>(spring);
+}
+
+core::OrientedAngleSpring fromMessage(const OrientedAngleSpring& message) {
+  return orientedAngleSpring<core::OrientedAngleSpring>(message);
+}
+OrientedAngleSpring toMessage(const core::OrientedAngleSpring& spring) {
+  return orientedAngleSpring<OrientedAngleSpring>(spring);
+}
+
+Energies toMessage(const core::Energies& energies) {
+  Energies message;
+  message.kinetic = energies.kinetic;
+  message.angle = energies.by_kind.get<core::AngleSpring>().joules;
+  message.solid_angle = energies.by_kind.get<core::SolidAngleSpring>().joules;
+  message.oriented_angle = energies.by_kind.get<core::OrientedAngleSpring>().joules;
+  message.potential = energies.potential();
+  message.total = energies.total();
+  message.dissipated = energies.dissipated;
+  return message;
+}
+
+geometry_msgs::Pose toPose(const core::Vector3& p, double radius) {
+  geometry_msgs::Pose pose;
+  setVector(radius * p, pose.position);
+  const double across = std::hypot(p.x(), p.y());
+  // Half of the turn from z to p; at the south pole any axis will do.
+  const double half_angle = std::atan2(across, p.z()) / 2;
+  pose.orientation.w = std::cos(half_angle);
+  pose.orientation.x = across > 0 ? -std::sin(half_angle) * p.y() / across : std::sin(half_angle);
+  pose.orientation.y = across > 0 ? std::sin(half_angle) * p.x() / across : 0;
+  return pose;
+}
+
+}  // namespace spherical_springs

@@ -1,0 +1,53 @@
+#include <ros/ros.h>
+
+#include <exception>
+
+#include "parameters.h"
+#include "publisher.h"
+#include "scene_directory.h"
+#include "services.h"
+#include "spherical_springs/runner.h"
+#include "spherical_springs/scene_file.h"
+#include "stepper.h"
+
+namespace spherical_springs {
+namespace {
+
+void loadFirstScene(const Parameters& parameters, const SceneDirectory& directory,
+                    core::Runner& runner) {
+  if (parameters.scene.empty()) return;
+  auto file = core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
+  runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
+}
+
+void run() {
+  constexpr int kThreads = 8;  // long calls hold one each
+  ros::NodeHandle node("~");
+  const Parameters parameters = Parameters::from(node);
+  const SceneDirectory directory(parameters.scene_directory);
+  core::Runner runner(parameters.simulation(), parameters.running);
+  loadFirstScene(parameters, directory, runner);
+
+  Publisher publisher(node, runner, parameters);
+  const Services services(node, runner, publisher, directory);
+  const Stepper stepper(node, runner, parameters);
+  ros::AsyncSpinner spinner(kThreads);
+  spinner.start();
+  ros::waitForShutdown();
+  runner.cancel();
+  spinner.stop();
+}
+
+}  // namespace
+}  // namespace spherical_springs
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "spherical_springs");
+  try {
+    spherical_springs::run();
+  } catch (const std::exception& fault) {
+    ROS_FATAL("%s", fault.what());
+    return 1;
+  }
+  return 0;
+}

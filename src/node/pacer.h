@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace spherical_springs {
+
+/// How many steps of a fixed length are due as time goes by.
+class Pacer {
+ public:
+  Pacer(double time_step, double real_time_factor)
+      : steps_per_second_(real_time_factor / time_step) {}
+
+  /// Steps due after another `elapsed` [s] of the clock. A clock that goes back counts as standing
+  /// still, and a jump ahead as `kLongest`, so that work never piles up; what is left of a step is
+  /// kept for the next time.
+  std::uint64_t due(double elapsed) {
+    constexpr double kLongest = 1;  // [s]
+    constexpr double kMostSteps = 1e15;
+    owed_ += std::clamp(elapsed, 0., kLongest) * steps_per_second_;
+    const double whole = std::min(std::floor(owed_), kMostSteps);
+    owed_ -= std::floor(owed_);
+    return static_cast<std::uint64_t>(whole);
+  }
+
+ private:
+  double steps_per_second_;
+  double owed_ = 0;
+};
+
+}  // namespace spherical_springs

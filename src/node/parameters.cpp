@@ -1,0 +1,84 @@
+#include "parameters.h"
+
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace spherical_springs {
+namespace {
+
+[[noreturn]] void refuse(const std::string& name, const XmlRpc::XmlRpcValue& value,
+                         const std::string& allowed) {
+  std::ostringstream text;
+  text << "parameter ~" << name << " is ";
+  value.write(text);
+  text << "; allowed: " << allowed;
+  throw std::invalid_argument(text.str());
+}
+
+/// Reads one parameter, if it is set; `allowed` says which values `accept` takes.
+template <class Value, class Accept>
+void read(const ros::NodeHandle& node, const std::string& name, Value& value,
+          const std::string& allowed, const Accept& accept) {
+  XmlRpc::XmlRpcValue raw;
+  if (!node.getParam(name, raw)) return;
+  if (!node.getParam(name, value) || !accept(value)) refuse(name, raw, allowed);
+}
+
+void read(const ros::NodeHandle& node, const std::string& name, double& value,
+          const core::Range& range) {
+  read(node, name, value, range.allowed, [&](double v) { return range.contains(v); });
+}
+
+void read(const ros::NodeHandle& node, const std::string& name, int& value, int low, int high) {
+  read(node, name, value,
+       "whole numbers from " + std::to_string(low) + " to " + std::to_string(high),
+       [&](int v) { return low <= v && v <= high; });
+}
+
+void read(const ros::NodeHandle& node, const std::string& name, std::string& value,
+          const std::vector<std::string>& choices) {
+  std::string allowed;
+  for (const std::string& choice : choices) allowed += (allowed.empty() ? "" : ", ") + choice;
+  read(node, name, value, allowed, [&](const std::string& v) {
+    return std::find(choices.begin(), choices.end(), v) != choices.end();
+  });
+}
+
+}  // namespace
+
+Parameters Parameters::from(const ros::NodeHandle& node) {
+  constexpr int kMostItems = 2'000'000'000;
+  const auto anyText = [](const std::string&) { return true; };
+  const auto someText = [](const std::string& text) { return !text.empty(); };
+  Parameters p;
+  read(node, "time_step", p.time_step, core::Range{1e-12, 1e6, "1e-12 to 1e6 [s]"});
+  read(node, "integrator", p.integrator, {"euler", "verlet"});
+  read(node, "publish_rate", p.publish_rate, core::Range{1e-3, 1e4, "0.001 to 10000 [Hz]"});
+  read(node, "real_time_factor", p.real_time_factor, core::Range{1e-6, 1e6, "1e-6 to 1e6"});
+  read(node, "running", p.running, "true, false", [](bool) { return true; });
+  read(node, "frame_id", p.frame_id, "a name that is not empty", someText);
+  read(node, "radius", p.radius, core::Range{1e-6, 1e6, "1e-6 to 1e6 [m]"});
+  read(node, "scene", p.scene, "the path of a file", anyText);
+  read(node, "threads", p.threads, 0, 256);
+  read(node, "spring_damping", p.spring_damping, {"relative", "own"});
+  read(node, "max_particles", p.max_particles, 0, kMostItems);
+  read(node, "max_springs", p.max_springs, 0, kMostItems);
+  read(node, "scene_directory", p.scene_directory, "the path of a directory", someText);
+  return p;
+}
+
+core::Simulation::Settings Parameters::simulation() const {
+  core::Simulation::Settings settings;
+  settings.scheme = &core::splittingScheme(integrator);
+  settings.time_step = time_step;
+  settings.system.spring_damping =
+      spring_damping == "own" ? core::SpringDamping::own : core::SpringDamping::relative;
+  settings.system.threads =
+      threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  settings.limits.particles = max_particles;
+  settings.limits.springs = max_springs;
+  return settings;
+}
+
+}  // namespace spherical_springs

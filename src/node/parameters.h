@@ -1,0 +1,34 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+#include "spherical_springs/simulation.h"
+
+namespace spherical_springs {
+
+/// The node's parameters, with their defaults.
+struct Parameters {
+  double time_step = 0.001;                 ///< [s]
+  std::string integrator = "verlet";        ///< "euler", "verlet"
+  double publish_rate = 30;                 ///< of poses and energies [Hz]
+  double real_time_factor = 1;              ///< simulated time / time of the clock
+  bool running = true;                      ///< whether time goes on from the start
+  std::string frame_id = "map";             ///< of poses and energies
+  double radius = 1;                        ///< of the published poses [m]
+  std::string scene;                        ///< a file to load at start; empty: none
+  int threads = 0;                          ///< 0: all cores
+  std::string spring_damping = "relative";  ///< "relative", "own"
+  int max_particles = 20'000'000;
+  int max_springs = 100'000'000;
+  std::string scene_directory = "~/.ros/spherical_springs";  ///< of files named in services
+
+  /// Reads what is set under `node`.
+  /// @throw std::invalid_argument naming the parameter, its value and what is allowed.
+  static Parameters from(const ros::NodeHandle& node);
+
+  core::Simulation::Settings simulation() const;
+};
+
+}  // namespace spherical_springs

@@ -1,0 +1,121 @@
+#include "publisher.h"
+
+#include <geometry_msgs/PoseArray.h>
+
+#include "conversion.h"
+#include "spherical_springs/measures.h"
+
+namespace spherical_springs {
+namespace {
+
+const char* nameOf(const core::Runner::Snapshot& snapshot) {
+  if (snapshot.activity == core::Activity::relaxing) return "relaxing";
+  return snapshot.running || snapshot.activity == core::Activity::stepping ? "running" : "paused";
+}
+
+}  // namespace
+
+// Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
+// read while the clock stands still.
+Publisher::Publisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters)
+    : parameters_(parameters), runner_(runner), last_status_(ros::WallTime::now()) {
+  constexpr double kStatusCheck = 0.05;  // [s]
+  const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { statusChanged(); };
+  poses_ = node.advertise<geometry_msgs::PoseArray>("poses", 1);
+  energies_ = node.advertise<Energies>("energies", 100);
+  status_ = node.advertise<Status>("status", 10, on_listener, ros::SubscriberStatusCallback(),
+                                   ros::VoidConstPtr(), true);
+  sample_timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
+                                   [this](const ros::TimerEvent&) { publishSample(); });
+  status_timer_ =
+      node.createWallTimer(ros::WallDuration(kStatusCheck),
+                           [this](const ros::WallTimerEvent&) { publishStatusIfDue(); });
+}
+
+void Publisher::tell(const std::string& message) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    message_ = message;
+  }
+  statusChanged();
+}
+
+Energies Publisher::energies(const core::Runner::Snapshot& snapshot) const {
+  Energies message = toMessage(core::energies(*snapshot.system, snapshot.state));
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = parameters_.frame_id;
+  message.time = snapshot.state.time;
+  return message;
+}
+
+void Publisher::publishSample() {
+  const bool to_poses = poses_.getNumSubscribers() > 0;
+  const bool to_energies = energies_.getNumSubscribers() > 0;
+  if (!to_poses && !to_energies) return;
+  const auto snapshot = runner_.snapshot();
+  const ros::Time stamp = ros::Time::now();
+  if (to_poses) {
+    geometry_msgs::PoseArray message;
+    message.header.stamp = stamp;
+    message.header.frame_id = parameters_.frame_id;
+    message.poses.reserve(snapshot.state.positions.cols());
+    for (Eigen::Index i = 0; i < snapshot.state.positions.cols(); ++i) {
+      message.poses.push_back(toPose(snapshot.state.positions.col(i), parameters_.radius));
+    }
+    poses_.publish(message);
+  }
+  if (to_energies) {
+    Energies message = energies(snapshot);
+    message.header.stamp = stamp;
+    energies_.publish(message);
+  }
+}
+
+void Publisher::publishStatusIfDue() {
+  constexpr double kPeriod = 1;  // [s]
+  const bool listened_to = status_.getNumSubscribers() > 0;
+  const double age = (ros::WallTime::now() - last_status_).toSec();
+  if (!status_changed_.exchange(false) && !(listened_to && age >= kPeriod)) return;
+  status_.publish(status(runner_.snapshot()));
+}
+
+double Publisher::realTimeFactor(const core::State& state) {
+  const ros::WallTime now = ros::WallTime::now();
+  const double elapsed = (now - last_status_).toSec();
+  const double simulated = state.time - last_simulated_;
+  last_status_ = now;
+  last_simulated_ = state.time;
+  return elapsed > 0 && simulated > 0 ? simulated / elapsed : 0;
+}
+
+Status Publisher::status(const core::Runner::Snapshot& snapshot) {
+  const core::State& state = snapshot.state;
+  const core::System& system = *snapshot.system;
+  Status message;
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = parameters_.frame_id;
+  message.time = state.time;
+  message.steps = state.steps;
+  message.particles = system.particleCount();
+  message.angle_springs = system.springs<core::AngleSpring>().size();
+  message.solid_angle_springs = system.springs<core::SolidAngleSpring>().size();
+  message.oriented_angle_springs = system.springs<core::OrientedAngleSpring>().size();
+  message.state = nameOf(snapshot);
+  message.integrator = parameters_.integrator;
+  message.time_step = parameters_.time_step;
+  message.stable_time_step = core::stableTimeStep(system, state.positions);
+  message.real_time_factor = realTimeFactor(state);
+  message.step_wall_time = snapshot.step_wall_time;
+  message.local_error = core::localError(
+      snapshot.system, core::splittingScheme(parameters_.integrator), parameters_.time_step, state);
+  message.energy_error = snapshot.account->energyError(core::energies(system, state));
+  message.angular_momentum_error = snapshot.account->angularMomentumError(system, state);
+  message.norm_error = core::normError(state);
+  message.max_torque = core::maxTorque(system, state);
+  message.relax_progress = snapshot.relax_progress;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  message.message = message_;
+  return message;
+}
+
+}  // namespace spherical_springs

@@ -1,0 +1,220 @@
+#include "services.h"
+
+#include <new>
+
+#include "conversion.h"
+#include "spherical_springs/range.h"
+
+namespace spherical_springs {
+namespace {
+
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+double secondsSince(const ros::WallTime& begin) { return (ros::WallTime::now() - begin).toSec(); }
+
+template <class Message>
+std::size_t springCount(const Message& message) {
+  return message.angle_springs.size() + message.solid_angle_springs.size() +
+         message.oriented_angle_springs.size();
+}
+
+}  // namespace
+
+/// A service that answers whatever happens: what goes wrong becomes `success: false` and a message
+/// beside an otherwise empty response.
+template <class Service>
+void Services::advertise(ros::NodeHandle& node, const std::string& name,
+                         void (Services::*handle)(const typename Service::Request&,
+                                                  typename Service::Response&)) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  boost::function<bool(Request&, Response&)> answer = [this, handle](Request& request,
+                                                                     Response& response) {
+    const auto refuse = [&](const std::string& reason) {
+      response = Response();
+      response.success = false;
+      response.message = reason;
+    };
+    try {
+      response.success = true;
+      (this->*handle)(request, response);
+    } catch (const std::bad_alloc&) {
+      refuse("there is not enough memory for this");
+    } catch (const std::exception& fault) {
+      refuse(fault.what());
+    }
+    publisher_.statusChanged();
+    return true;
+  };
+  servers_.push_back(node.advertiseService(name, answer));
+}
+
+Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publisher,
+                   const SceneDirectory& directory)
+    : runner_(runner), publisher_(publisher), directory_(directory) {
+  advertise<AddParticles>(node, "add_particles", &Services::addParticles);
+  advertise<SetParticles>(node, "set_particles", &Services::setParticles);
+  advertise<RemoveParticles>(node, "remove_particles", &Services::removeParticles);
+  advertise<AddSprings>(node, "add_springs", &Services::addSprings);
+  advertise<SetSprings>(node, "set_springs", &Services::setSprings);
+  advertise<RemoveSprings>(node, "remove_springs", &Services::removeSprings);
+  advertise<GetScene>(node, "get_scene", &Services::getScene);
+  advertise<LoadScene>(node, "load_scene", &Services::loadScene);
+  advertise<SaveScene>(node, "save_scene", &Services::saveScene);
+  advertise<std_srvs::Trigger>(node, "clear", &Services::clear);
+  advertise<std_srvs::Trigger>(node, "reset", &Services::reset);
+  advertise<std_srvs::SetBool>(node, "set_running", &Services::setRunning);
+  advertise<Step>(node, "step", &Services::step);
+  advertise<Relax>(node, "relax", &Services::relax);
+  advertise<std_srvs::Trigger>(node, "cancel", &Services::cancel);
+}
+
+void Services::addParticles(const AddParticles::Request& request,
+                            AddParticles::Response& response) {
+  auto particles = fromMessages(request.particles);
+  response.ids =
+      runner_.change([&](core::Simulation& s) { return s.addParticles(std::move(particles)); });
+  response.message = "added " + counted(response.ids.size(), "particle");
+}
+
+void Services::setParticles(const SetParticles::Request& request,
+                            SetParticles::Response& response) {
+  auto particles = fromMessages(request.particles);
+  runner_.change([&](core::Simulation& s) { s.setParticles(request.ids, std::move(particles)); });
+  response.message = "set " + counted(request.ids.size(), "particle");
+}
+
+void Services::removeParticles(const RemoveParticles::Request& request,
+                               RemoveParticles::Response& response) {
+  const std::size_t springs =
+      runner_.change([&](core::Simulation& s) { return s.removeParticles(request.ids); });
+  response.springs_removed = static_cast<std::uint32_t>(springs);
+  response.message = "removed " + counted(request.ids.size(), "particle") + " and " +
+                     counted(response.springs_removed, "spring");
+}
+
+void Services::addSprings(const AddSprings::Request& request, AddSprings::Response& response) {
+  auto springs = springsFrom(request);
+  setSpringIds(
+      runner_.change([&](core::Simulation& s) { return s.addSprings(std::move(springs)); }),
+      response);
+  response.message = "added " + counted(springCount(request), "spring");
+}
+
+void Services::setSprings(const SetSprings::Request& request, SetSprings::Response& response) {
+  auto springs = springsFrom(request);
+  const auto ids = springIdsFrom(request);
+  runner_.change([&](core::Simulation& s) { s.setSprings(ids, std::move(springs)); });
+  response.message = "set " + counted(springCount(request), "spring");
+}
+
+void Services::removeSprings(const RemoveSprings::Request& request,
+                             RemoveSprings::Response& response) {
+  const auto ids = springIdsFrom(request);
+  runner_.change([&](core::Simulation& s) { s.removeSprings(ids); });
+  response.message =
+      "removed " + counted(request.angle_spring_ids.size() + request.solid_angle_spring_ids.size() +
+                               request.oriented_angle_spring_ids.size(),
+                           "spring");
+}
+
+void Services::getScene(const GetScene::Request&, GetScene::Response& response) {
+  core::Scene scene;
+  runner_.read([&](const core::Simulation& s) {
+    scene = s.presentScene();
+    response.time = s.state().time;
+  });
+  const auto fill = [](const auto& table, auto& ids, auto& messages) {
+    ids = table.ids();
+    messages.reserve(table.size());
+    for (const auto& item : table.items()) messages.push_back(toMessage(item));
+  };
+  fill(scene.particles(), response.particle_ids, response.particles);
+  fill(scene.springs<core::AngleSpring>(), response.angle_spring_ids, response.angle_springs);
+  fill(scene.springs<core::SolidAngleSpring>(), response.solid_angle_spring_ids,
+       response.solid_angle_springs);
+  fill(scene.springs<core::OrientedAngleSpring>(), response.oriented_angle_spring_ids,
+       response.oriented_angle_springs);
+}
+
+void Services::loadScene(const LoadScene::Request& request, LoadScene::Response& response) {
+  const auto path = directory_.inside(request.path);
+  const auto limits = runner_.read([](const core::Simulation& s) { return s.settings().limits; });
+  auto file = core::readScene(path, limits);
+  runner_.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  response.message = "loaded " + path.string();
+  publisher_.tell(response.message);
+}
+
+void Services::saveScene(const SaveScene::Request& request, SaveScene::Response& response) {
+  const auto path = directory_.inside(request.path);
+  directory_.make();
+  core::Scene scene;
+  const double time = runner_.read([&](const core::Simulation& s) {
+    scene = s.presentScene();
+    return s.state().time;
+  });
+  core::writeScene(path, scene, time);
+  response.message = "saved " + path.string();
+  publisher_.tell(response.message);
+}
+
+void Services::clear(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  runner_.change([](core::Simulation& s) { s.clear(); });
+  response.message = "the scene is empty, time 0";
+}
+
+void Services::reset(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  runner_.change([](core::Simulation& s) { s.reset(); });
+  response.message = "every particle is where it was last added or set, time 0";
+}
+
+void Services::setRunning(const std_srvs::SetBool::Request& request,
+                          std_srvs::SetBool::Response& response) {
+  runner_.setRunning(request.data);
+  response.message = request.data ? "running" : "paused";
+}
+
+void Services::step(const Step::Request& request, Step::Response& response) {
+  const auto begin = ros::WallTime::now();
+  if (request.steps > 0) {
+    const std::uint64_t done = runner_.step(request.steps);
+    response.message = done == request.steps ? "did " + counted(done, "step")
+                                             : "cancelled after " + counted(done, "step") + " of " +
+                                                   std::to_string(request.steps);
+  }
+  response.wall_time = secondsSince(begin);
+  const auto now = runner_.snapshot();
+  response.time = now.state.time;
+  response.energies = publisher_.energies(now);
+}
+
+void Services::relax(const Relax::Request& request, Relax::Response& response) {
+  const auto begin = ros::WallTime::now();
+  if (request.keep_orientation) {
+    throw std::invalid_argument(
+        "keep_orientation is true; allowed: false (relaxing without folds is not there yet)");
+  }
+  core::RelaxationOptions options;
+  options.method = core::relaxationMethod(request.method);
+  options.tolerance = request.tolerance;
+  options.max_time = request.max_time;
+  publisher_.statusChanged();
+  const auto result = runner_.relax(options);
+  response.converged = result.converged;
+  response.iterations = result.iterations;
+  response.wall_time = secondsSince(begin);
+  response.energy_before = result.energy_before;
+  response.energy_after = result.energy_after;
+  response.max_torque = result.max_torque;
+  response.message = result.message;
+  publisher_.tell("relax: " + result.message);
+}
+
+void Services::cancel(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.message = runner_.cancel() ? "cancelling" : "nothing was under way";
+}
+
+}  // namespace spherical_springs

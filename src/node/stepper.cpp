@@ -1,0 +1,31 @@
+#include "stepper.h"
+
+#include <algorithm>
+
+namespace spherical_springs {
+namespace {
+
+constexpr double kPeriod = 0.01;  // [s]
+
+}  // namespace
+
+Stepper::Stepper(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters)
+    : runner_(runner),
+      pacer_(parameters.time_step, parameters.real_time_factor),
+      last_tick_(ros::Time::now()),
+      last_wall_tick_(ros::WallTime::now()),
+      timer_(node.createTimer(ros::Duration(kPeriod), [this](const ros::TimerEvent&) { tick(); })) {
+}
+
+// Steps that do not fit into the time until the next tick are dropped: simulated time falls behind.
+void Stepper::tick() {
+  const ros::Time now = ros::Time::now();
+  const ros::WallTime wall_now = ros::WallTime::now();
+  const std::uint64_t due = pacer_.due((now - last_tick_).toSec());
+  const double wall_elapsed = (wall_now - last_wall_tick_).toSec();
+  last_tick_ = now;
+  last_wall_tick_ = wall_now;
+  runner_.advance(due, std::max(kPeriod, wall_elapsed));
+}
+
+}  // namespace spherical_springs

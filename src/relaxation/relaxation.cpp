@@ -1,0 +1,142 @@
+#include "spherical_springs/relaxation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+#include "fire.h"
+#include "newton.h"
+#include "spherical_springs/range.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::unique_ptr<Descent> makeDescent(RelaxationMethod method) {
+  if (method == RelaxationMethod::dynamics) return std::make_unique<Fire>();
+  return std::make_unique<Newton>();
+}
+
+/// Whether no direction has negative curvature beyond rounding.
+bool isMinimum(TangentEnergy& energy) {
+  constexpr double kNegligible = 1e-8;  // of the stiffness scale
+  return energy.unknowns() == 0 ||
+         ShiftedCholesky().factorise(energy, Curvature::exact, kNegligible);
+}
+
+/// Displaces every free particle a little, the same way every run, to leave a saddle.
+void leaveSaddle(TangentEnergy& energy, unsigned attempt) {
+  constexpr double kDisplacement = 1e-3;  // [rad]
+  std::mt19937 generator(attempt);
+  Eigen::VectorXd step(energy.unknowns());
+  for (double& component : step) {
+    component = kDisplacement * (generator() / (0.5 * std::mt19937::max()) - 1);
+  }
+  energy.moveTo(energy.moved(step));
+}
+
+/// One relaxation under way.
+class Relaxation {
+ public:
+  Relaxation(const System& system, const Points& positions, const RelaxationOptions& options)
+      : options_(options),
+        tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
+        energy_(system, positions),
+        first_torque_(energy_.maxTorque()),
+        descent_(makeDescent(options.method)) {
+    result_.energy_before = energy_.value();
+    keep();
+  }
+
+  RelaxationResult run() {
+    constexpr unsigned kAttempts = 20;
+    for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
+      if (!descend()) return result_;
+      if (isMinimum(energy_)) {
+        result_.converged = true;
+        result_.message = "converged";
+        return result_;
+      }
+      leaveSaddle(energy_, attempt);
+      descent_->restart();
+    }
+    result_.message = "ended where the torque is within the tolerance but the energy not least";
+    return result_;
+  }
+
+ private:
+  /// Iterates until the torque is within the tolerance; false when something else ended it.
+  bool descend() {
+    bool first = true;
+    while (energy_.maxTorque() > tolerance_) {
+      if (!goOn()) return false;
+      const bool moved = descent_->iterate(energy_);
+      ++result_.iterations;
+      if (first || energy_.maxTorque() < result_.max_torque) keep();
+      first = false;
+      if (!moved && energy_.maxTorque() > tolerance_) return giveUp();
+    }
+    keep();
+    return true;
+  }
+
+  void keep() {
+    result_.positions = energy_.positions();
+    result_.energy_after = energy_.value();
+    result_.max_torque = energy_.maxTorque();
+  }
+
+  bool goOn() {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
+    if (options_.max_time > 0 && elapsed >= options_.max_time) {
+      result_.message = "max_time is over; largest torque " + toText(result_.max_torque) +
+                        " N m, tolerance " + toText(tolerance_) + " N m";
+      return false;
+    }
+    const double way = std::log(first_torque_ / tolerance_);
+    const double gone = std::log(first_torque_ / std::max(result_.max_torque, tolerance_));
+    const double fraction = way > 0 ? std::clamp(gone / way, 0., 1.) : 1;
+    if (options_.go_on({result_.positions, result_.max_torque, fraction})) return true;
+    result_.message = "cancelled; largest torque " + toText(result_.max_torque) + " N m";
+    return false;
+  }
+
+  bool giveUp() {
+    result_.message =
+        "no step lowers the energy any more: rounding ends it at a largest torque of " +
+        toText(result_.max_torque) + " N m, above the tolerance of " + toText(tolerance_) + " N m";
+    return false;
+  }
+
+  const RelaxationOptions& options_;
+  const double tolerance_;
+  const Clock::time_point begin_ = Clock::now();
+  TangentEnergy energy_;
+  const double first_torque_;
+  std::unique_ptr<Descent> descent_;
+  RelaxationResult result_;
+};
+
+}  // namespace
+
+RelaxationMethod relaxationMethod(const std::string& name) {
+  if (name.empty() || name == "newton") return RelaxationMethod::newton;
+  if (name == "dynamics") return RelaxationMethod::dynamics;
+  throw std::invalid_argument("method is '" + name + "'; allowed: newton (the default), dynamics");
+}
+
+double defaultTolerance(const System& system) { return 1e-9 * system.largestStiffness(); }
+
+RelaxationResult relax(const System& system, const Points& positions,
+                       const RelaxationOptions& options) {
+  requireInside(Range{0, kLargest, "0 (the default) to 1e30 [N m]"}, options.tolerance,
+                "tolerance");
+  requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
+  return Relaxation(system, positions, options).run();
+}
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,94 @@
+#include "spherical_springs/sphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace spherical_springs::core {
+
+Vector3 direction(const Vector3& vector) {
+  constexpr double kUnitTolerance = 4 * std::numeric_limits<double>::epsilon();
+  if (std::abs(vector.squaredNorm() - 1) <= kUnitTolerance) return vector;
+  const Vector3 scaled = vector / vector.cwiseAbs().maxCoeff();
+  return scaled.normalized();
+}
+
+Vector3 perpendicular(const Vector3& p) {
+  Eigen::Index smallest;
+  p.cwiseAbs().minCoeff(&smallest);
+  return p.cross(Vector3::Unit(smallest)).normalized();
+}
+
+Arc arc(const Vector3& a, const Vector3& b) {
+  const Vector3 cross = crossOfUnits(a, b);
+  const double sine = cross.norm();
+  return {std::atan2(sine, a.dot(b)), sine > 0 ? Vector3(cross / sine) : perpendicular(a)};
+}
+
+namespace {
+
+/// The vertices turned, keeping their cyclic order, so that the edge first-second is the longest.
+struct LongestEdgeFirst {
+  Vector3 first, second, third;
+
+  LongestEdgeFirst(const Vector3& a, const Vector3& b, const Vector3& c)
+      : first(a), second(b), third(c) {
+    const double ab = (a - b).squaredNorm();
+    const double bc = (b - c).squaredNorm();
+    const double ca = (c - a).squaredNorm();
+    if (bc > ab && bc >= ca) {
+      *this = LongestEdgeFirst(b, c, a, Turned());
+    } else if (ca > ab) {
+      *this = LongestEdgeFirst(c, a, b, Turned());
+    }
+  }
+
+ private:
+  struct Turned {};
+  LongestEdgeFirst(const Vector3& a, const Vector3& b, const Vector3& c, Turned)
+      : first(a), second(b), third(c) {}
+};
+
+/// The differences that are exact decide the form: edges of a small triangle, or the sum of a
+/// nearly antipodal pair.
+double tripleProduct(const LongestEdgeFirst& t) {
+  const Vector3 to_first = t.first - t.third;
+  const Vector3 to_second = t.second - t.third;
+  const double shortest = std::min(to_first.squaredNorm(), to_second.squaredNorm());
+  if ((t.first + t.second).squaredNorm() < shortest) {
+    return t.third.dot(crossOfUnits(t.first, t.second));
+  }
+  return t.third.dot(to_first.cross(to_second));
+}
+
+}  // namespace
+
+double tripleProduct(const Vector3& a, const Vector3& b, const Vector3& c) {
+  return tripleProduct(LongestEdgeFirst(a, b, c));
+}
+
+Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const LongestEdgeFirst t(a, b, c);
+  const Vector3 sum = t.first + t.second;
+  const double squared_sum = sum.squaredNorm();
+  Triangle result;
+  result.triple_product = tripleProduct(t);
+  result.denominator = 0.5 * squared_sum + sum.dot(t.third);
+  result.squared_norm =
+      0.25 * squared_sum * (t.second + t.third).squaredNorm() * (t.third + t.first).squaredNorm();
+  return result;
+}
+
+double solidAngle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Triangle t = triangle(a, b, c);
+  return t.squared_norm > 0 ? 2 * std::atan2(t.triple_product, t.denominator) : 0;
+}
+
+Vector3 rotated(const Vector3& p, const Vector3& rotation) {
+  const double angle = rotation.norm();
+  if (angle == 0) return p;
+  const Vector3 moved = std::cos(angle) * p + (std::sin(angle) / angle) * rotation.cross(p);
+  return moved * (1.5 - 0.5 * moved.squaredNorm());
+}
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,50 @@
+#include "spherical_springs/springs/angle_spring.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherical_springs::core {
+
+void rest(AngleSpring& spring, const std::array<Vector3, 2>& points) {
+  spring.rest_angle = arc(points[0], points[1]).angle;
+}
+
+Condition<2> condition(const AngleSpring& spring, const std::array<Vector3, 2>& points) {
+  const Arc between = arc(points[0], points[1]);
+  return {between.angle - spring.rest_angle, {-between.axis, between.axis}};
+}
+
+// The Hessian of the angle acts across the arc only. Its eigenvectors there are both ends moving to
+// the same side, with -tan(angle / 2), and to opposite sides, with cot(angle / 2).
+TangentCondition<2> tangentCondition(const AngleSpring& spring,
+                                     const std::array<Vector3, 2>& points,
+                                     const std::array<TangentFrame, 2>& frames,
+                                     Curvature curvature) {
+  constexpr double kNearestToSingular = 1e-8;
+  const Arc between = arc(points[0], points[1]);
+  TangentCondition<2> result;
+  result.value = between.angle - spring.rest_angle;
+  result.gradient[0] = frames[0].transpose() * points[0].cross(between.axis);
+  result.gradient[1] = frames[1].transpose() * between.axis.cross(points[1]);
+
+  const double half_angle =
+      std::clamp(between.angle / 2, kNearestToSingular, kPi / 2 - kNearestToSingular);
+  double same_side = -std::tan(half_angle);
+  double opposite_sides = 1 / std::tan(half_angle);
+  if (curvature == Curvature::definite) {
+    if (result.value > 0) same_side = 0;
+    if (result.value < 0) opposite_sides = 0;
+  }
+  const std::array<Eigen::Vector2d, 2> across = {
+      Eigen::Vector2d(result.gradient[0].y(), -result.gradient[0].x()),
+      Eigen::Vector2d(-result.gradient[1].y(), result.gradient[1].x())};
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const double weight = (same_side + (i == j ? opposite_sides : -opposite_sides)) / 2;
+      result.hessian[i][j] = weight * across[i] * across[j].transpose();
+    }
+  }
+  return result;
+}
+
+}  // namespace spherical_springs::core
