@@ -46,13 +46,13 @@ void Integrator::kick(double duration, State& state) {
   system_->evaluate(state.positions, workspace_);
   Points& velocities = state.angular_velocities;
   if (system_->damped()) {
-    state.dissipated += system_->damp(workspace_, duration / 2, false, velocities);
+    state.dissipated += system_->damp(workspace_, duration / 2, velocities);
   }
   parallelFor(system_->particleCount(), system_->threads(), [&](std::ptrdiff_t i) {
     velocities.col(i) += duration * system_->inverseMasses()[i] * workspace_.torques.col(i);
   });
   if (system_->damped()) {
-    state.dissipated += system_->damp(workspace_, duration / 2, true, velocities);
+    state.dissipated += system_->damp(workspace_, duration / 2, velocities);
   }
 }
 

@@ -102,12 +102,15 @@ void System::evaluate(const Points& positions, Workspace& workspace) const {
   });
 }
 
-double System::damp(const Workspace& workspace, double duration, bool backward,
+double System::damp(const Workspace& workspace, double duration,
                     Points& angular_velocities) const {
   double taken = 0;
-  if (particles_damped_ && !backward) taken += dampViscously(duration, angular_velocities);
-  if (springs_damped_) taken += dampSprings(workspace, duration, backward, angular_velocities);
-  if (particles_damped_ && backward) taken += dampViscously(duration, angular_velocities);
+  if (particles_damped_) taken += dampViscously(duration / 2, angular_velocities);
+  if (springs_damped_) {
+    taken += dampSprings(workspace, duration / 2, false, angular_velocities);
+    taken += dampSprings(workspace, duration / 2, true, angular_velocities);
+  }
+  if (particles_damped_) taken += dampViscously(duration / 2, angular_velocities);
   return taken;
 }
 

@@ -63,12 +63,13 @@ class System {
   /// Torques of the springs on each particle, damping apart, into `workspace`.
   void evaluate(const Points& positions, Workspace& workspace) const;
 
-  /// The flow of all damping over `duration` [s] at the positions last evaluated: viscous damping
-  /// and that of each spring, each by its exact flow, one after another in the order of the springs
-  /// or, `backward`, in the opposite one, so that a pair of both is symmetric in time.
+  /// The flow of all damping over `duration` [s] at the positions last evaluated: viscous damping and
+  /// that of each spring, each by its exact flow, one after another and then back in the opposite
+  /// order over half of the duration each. That is symmetric in time, and as a map of momenta
+  /// symmetric and positive, so that however strong the damping, torques still move particles down
+  /// the energy.
   /// @return the energy taken out [J].
-  double damp(const Workspace& workspace, double duration, bool backward,
-              Points& angular_velocities) const;
+  double damp(const Workspace& workspace, double duration, Points& angular_velocities) const;
 
   PotentialEnergies potential(const Points& positions) const;
   double kinetic(const Points& angular_velocities) const;

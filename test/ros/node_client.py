@@ -1,0 +1,157 @@
+"""What all tests of the node share: calling it, listening to it, starting it, waiting for it."""
+
+import itertools
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import roslib.packages
+import rospy
+from spherical_springs.srv import (
+    AddParticles, AddSprings, GetScene, LoadScene, Relax, RemoveParticles, RemoveSprings,
+    SaveScene, SetParticles, SetSprings, Step)
+from std_srvs.srv import SetBool, Trigger
+
+PACKAGE = 'spherical_springs'
+SERVICES = {
+    'add_particles': AddParticles,
+    'set_particles': SetParticles,
+    'remove_particles': RemoveParticles,
+    'add_springs': AddSprings,
+    'set_springs': SetSprings,
+    'remove_springs': RemoveSprings,
+    'get_scene': GetScene,
+    'load_scene': LoadScene,
+    'save_scene': SaveScene,
+    'clear': Trigger,
+    'reset': Trigger,
+    'set_running': SetBool,
+    'step': Step,
+    'relax': Relax,
+    'cancel': Trigger,
+}
+LONG = 60  # [s] on the wall; only a broken node takes that long
+
+
+def wait_until(condition, timeout=LONG):
+    """Return the first true value of condition()."""
+    end = time.monotonic() + timeout
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > end:
+            raise AssertionError('not so within %g s: %r' % (timeout, condition))
+        time.sleep(0.01)
+
+
+class Refused(Exception):
+    """What a service said when it answered with success: false."""
+
+
+class NodeClient:
+    """Every service of a node as a method: client.step(steps=3) returns the response of ~step."""
+
+    def __init__(self, name='/' + PACKAGE):
+        self.name = name
+        for service, service_type in SERVICES.items():
+            rospy.wait_for_service(name + '/' + service, LONG)
+            setattr(self, service, self._method(service, service_type))
+
+    def _method(self, service, service_type):
+        def call(*args, **fields):
+            # Each call has a proxy of its own, as threads may not share one.
+            response = rospy.ServiceProxy(self.name + '/' + service, service_type)(*args, **fields)
+            if not response.success:
+                raise Refused(response.message)
+            return response
+        return call
+
+    def begin(self, service, **fields):
+        """Call in the background; .result() of what is returned is the response."""
+        executor = ThreadPoolExecutor(1)
+        future = executor.submit(getattr(self, service), **fields)
+        executor.shutdown(wait=False)
+        return future
+
+    def listen(self, topic, message_type):
+        return Listener(self.name + '/' + topic, message_type)
+
+
+class Listener:
+    """Keeps the messages of a topic, from __enter__ to __exit__."""
+
+    def __init__(self, topic, message_type):
+        self._topic, self._type = topic, message_type
+        self._arrived = threading.Condition()
+        self._messages = []
+
+    def __enter__(self):
+        self._subscriber = rospy.Subscriber(self._topic, self._type, self._keep)
+        return self
+
+    def __exit__(self, *_):
+        self._subscriber.unregister()
+
+    def _keep(self, message):
+        with self._arrived:
+            self._messages.append(message)
+            self._arrived.notify_all()
+
+    def first(self, condition=lambda message: True, timeout=LONG):
+        """The first message so far, or to come, that fulfils the condition."""
+        return self.several(1, condition, timeout)[0]
+
+    def several(self, count, condition=lambda message: True, timeout=LONG):
+        """The first messages, as many as asked, that fulfil the condition."""
+        def found():
+            fitting = [m for m in self._messages if condition(m)]
+            return fitting[:count] if len(fitting) >= count else None
+
+        with self._arrived:
+            messages = self._arrived.wait_for(found, timeout)
+        if messages is None:
+            raise AssertionError('%s: no %d such messages in %g s' % (self._topic, count, timeout))
+        return messages
+
+
+class NodeProcess:
+    """A node of one's own, with private parameters; it ends with the `with` block."""
+
+    _numbers = itertools.count()
+
+    def __init__(self, environment=None, **parameters):
+        self.name = '/springs_%d' % next(self._numbers)
+        program = roslib.packages.find_node(PACKAGE, PACKAGE + '_node')[0]
+        command = [program, '__name:=' + self.name[1:]]
+        command += ['_%s:=%s' % item for item in parameters.items()]
+        self._output = tempfile.TemporaryFile('w+')
+        self._process = subprocess.Popen(
+            command, stdout=self._output, stderr=subprocess.STDOUT,
+            env={**os.environ, **(environment or {})})
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
+        self._output.close()
+
+    def client(self):
+        return NodeClient(self.name)
+
+    def stop(self):
+        """Ask it to end; return its exit code."""
+        self._process.send_signal(signal.SIGINT)
+        return self.exit_code()
+
+    def exit_code(self):
+        return self._process.wait(LONG)
+
+    def output(self):
+        self._output.seek(0)
+        return self._output.read()
