@@ -39,11 +39,29 @@ void leaveSaddle(TangentEnergy& energy, unsigned attempt) {
   energy.moveTo(energy.moved(step));
 }
 
+/// The first spring whose condition is nearly undefined at `positions`, by its place in the order
+/// of ids; empty when there is none.
+std::string nearlyUndefinedSpring(const System& system, const Points& positions) {
+  std::string name;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& springs = system.springs<Spring>();
+    for (std::size_t i = 0; i < springs.size() && name.empty(); ++i) {
+      if (nearlyUndefined(springs[i], System::points(springs[i], positions))) {
+        name =
+            std::string(Spring::kTable) + "[" + std::to_string(i) + "], with antipodal vertices,";
+      }
+    }
+  });
+  return name;
+}
+
 /// One relaxation under way.
 class Relaxation {
  public:
   Relaxation(const System& system, const Points& positions, const RelaxationOptions& options)
-      : options_(options),
+      : system_(system),
+        options_(options),
         tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
         energy_(system, positions),
         first_torque_(energy_.maxTorque()),
@@ -71,17 +89,23 @@ class Relaxation {
  private:
   /// Iterates until the torque is within the tolerance; false when something else ended it.
   bool descend() {
-    bool first = true;
     while (energy_.maxTorque() > tolerance_) {
       if (!goOn()) return false;
       const bool moved = descent_->iterate(energy_);
       ++result_.iterations;
-      if (first || energy_.maxTorque() < result_.max_torque) keep();
-      first = false;
+      if (isBetter()) keep();
       if (!moved && energy_.maxTorque() > tolerance_) return giveUp();
     }
     keep();
     return true;
+  }
+
+  /// Lower in energy than what is kept or, where rounding hides that, in torque.
+  bool isBetter() const {
+    constexpr double kRounding = 1e-13;
+    const double drop = result_.energy_after - energy_.value();
+    if (std::abs(drop) > kRounding * result_.energy_after) return drop > 0;
+    return energy_.maxTorque() < result_.max_torque;
   }
 
   void keep() {
@@ -106,12 +130,16 @@ class Relaxation {
   }
 
   bool giveUp() {
-    result_.message =
-        "no step lowers the energy any more: rounding ends it at a largest torque of " +
-        toText(result_.max_torque) + " N m, above the tolerance of " + toText(tolerance_) + " N m";
+    const std::string spring = nearlyUndefinedSpring(system_, result_.positions);
+    const std::string reason =
+        spring.empty() ? "rounding ends it" : spring + " has no area, which ends it";
+    result_.message = "no step lowers the energy any more: " + reason + " at a largest torque of " +
+                      toText(result_.max_torque) + " N m, above the tolerance of " +
+                      toText(tolerance_) + " N m";
     return false;
   }
 
+  const System& system_;
   const RelaxationOptions& options_;
   const double tolerance_;
   const Clock::time_point begin_ = Clock::now();

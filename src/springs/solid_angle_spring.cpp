@@ -20,6 +20,11 @@ void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points) {
   spring.rest_solid_angle = solidAngle(points[0], points[1], points[2]);
 }
 
+bool nearlyUndefined(const SolidAngleSpring&, const std::array<Vector3, 3>& points) {
+  constexpr double kNear = 1e-6;
+  return triangle(points[0], points[1], points[2]).squared_norm < kNear * kNear;
+}
+
 Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points) {
   const auto& [a, b, c] = points;
   const Triangle t = triangle(a, b, c);

@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import threading
 import time
+import unittest
 from concurrent.futures import ThreadPoolExecutor
 
 import roslib.packages
@@ -155,3 +156,17 @@ class NodeProcess:
     def output(self):
         self._output.seek(0)
         return self._output.read()
+
+
+class NodeTest(unittest.TestCase):
+    """A test on the node that the launch file has started: paused, with an empty scene."""
+
+    maxDiff = 4000
+
+    @classmethod
+    def setUpClass(cls):
+        cls.node = NodeClient()
+
+    def setUp(self):
+        self.node.set_running(False)
+        self.node.clear()

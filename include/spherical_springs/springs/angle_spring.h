@@ -31,6 +31,9 @@ struct AngleSpring {
 /// Takes the present angle as the rest angle.
 void rest(AngleSpring& spring, const std::array<Vector3, 2>& points);
 
+/// The angle is defined everywhere.
+constexpr bool nearlyUndefined(const AngleSpring&, const std::array<Vector3, 2>&) { return false; }
+
 /// At coinciding or antipodal points the gradient is along the fixed axis of `arc`.
 Condition<2> condition(const AngleSpring& spring, const std::array<Vector3, 2>& points);
 

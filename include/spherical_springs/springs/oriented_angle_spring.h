@@ -40,6 +40,11 @@ double effectiveWidth(const OrientedAngleSpring& spring);
 /// angle, and is written into the spring.
 void rest(OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
 
+/// The signed angle is defined everywhere.
+constexpr bool nearlyUndefined(const OrientedAngleSpring&, const std::array<Vector3, 3>&) {
+  return false;
+}
+
 Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
 
 TangentCondition<3> tangentCondition(const OrientedAngleSpring& spring,

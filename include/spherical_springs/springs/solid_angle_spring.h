@@ -35,6 +35,9 @@ struct SolidAngleSpring {
 /// Takes the present solid angle as the one at rest.
 void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
+/// Whether two vertices are within 1e-6 of antipodal, where torques grow without limit.
+bool nearlyUndefined(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
+
 /// With an antipodal pair of vertices the area is undefined: it counts as 0 there, and the gradient
 /// is zero.
 Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
