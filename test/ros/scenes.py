@@ -136,3 +136,32 @@ def solid_angles(a, b, c):
     triple_product = np.sum(a * np.cross(b - a, c - a), axis=-1)
     denominator = 1 + np.sum(a * b, axis=-1) + np.sum(b * c, axis=-1) + np.sum(c * a, axis=-1)
     return 2 * np.arctan2(triple_product, denominator)
+
+
+def orientation(a, b, c, width):
+    """The sign of an oriented-angle spring, which changes smoothly over the width."""
+    u = np.clip(np.dot(a, np.cross(b, c)) / width, -1, 1)
+    return u * (15 - 10 * u ** 2 + 3 * u ** 4) / 8
+
+
+def energies(scene):
+    """What the springs of each kind hold and the particles carry, by the definitions."""
+    places = dict(zip(scene.particle_ids, positions(scene)))
+
+    def stored(springs, deviation):
+        return sum(s.stiffness * deviation(s, *[places[i] for i in s.particles]) ** 2 / 2
+                   for s in springs)
+
+    def oriented_deviation(spring, a, b, c):
+        width = spring.width or 0.2 * math.sin(spring.rest_angle / 2) ** 2
+        return orientation(a, b, c, width) * angle(a, b) - spring.rest_angle
+
+    return {
+        'angle': stored(scene.angle_springs, lambda s, a, b: angle(a, b) - s.rest_angle),
+        'solid_angle': stored(
+            scene.solid_angle_springs,
+            lambda s, *corners: math.remainder(
+                solid_angles(*corners) - s.rest_solid_angle, 4 * math.pi)),
+        'oriented_angle': stored(scene.oriented_angle_springs, oriented_deviation),
+        'kinetic': np.sum(masses(scene) * np.sum(angular_velocities(scene) ** 2, axis=1)) / 2,
+    }

@@ -1,0 +1,77 @@
+// Meshes and networks for measurements, the same every run.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "spherical_springs/scene.h"
+
+namespace benchmark_scenes {
+
+using spherical_springs::core::AngleSpring;
+using spherical_springs::core::Particle;
+using spherical_springs::core::SolidAngleSpring;
+using spherical_springs::core::SpringLists;
+using spherical_springs::core::Vector3;
+
+struct Mesh {
+  std::vector<Vector3> vertices;  ///< unit vectors
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  std::vector<std::array<std::uint32_t, 2>> edges;
+};
+
+namespace detail {
+
+inline Mesh icosahedron() {
+  const double t = (1 + std::sqrt(5.)) / 2;
+  Mesh mesh;
+  mesh.vertices = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                   {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
+  for (Vector3& vertex : mesh.vertices) vertex.normalize();
+  mesh.faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  return mesh;
+}
+
+/// Cuts every face into four; the edges are those of the result.
+inline Mesh subdivided(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  Mesh result;
+  result.vertices = mesh.vertices;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), result.vertices.size());
+    if (is_new) {
+      result.vertices.push_back((result.vertices[a] + result.vertices[b]).normalized());
+    }
+    return found->second;
+  };
+  for (const auto& [a, b, c] : mesh.faces) {
+    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    result.faces.insert(result.faces.end(),
+                        {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return result;
+}
+
+}  // namespace detail
+
+/// An icosahedron subdivided `level` times: 10 * 4^level + 2 vertices.
+inline Mesh icosphere(int level) {
+  Mesh mesh = detail::icosahedron();
+  for (int i = 0; i < level; ++i) mesh = detail::subdivided(mesh);
+  for (const auto& face : mesh.faces) {
+    for (int i = 0; i < 3; ++i) {
+      if (face[i] < face[(i + 1) % 3]) mesh.edges.push_back({face[i], face[(i + 1) % 3]});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace benchmark_scenes

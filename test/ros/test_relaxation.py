@@ -1,0 +1,134 @@
+import math
+
+import numpy as np
+
+from node_client import NodeTest, Refused
+from scenes import (
+    add_knot, add_octant, add_random_scene, angle, angle_spring, angular_velocities, exact,
+    particle, positions)
+
+METHODS = ('newton', 'dynamics')
+
+
+class TestOutcome(NodeTest):
+    def test_the_octant(self):
+        for method in METHODS:
+            self.node.clear()
+            add_octant(self.node, damping=0.5)
+            self.node.step(100)
+            time = self.node.get_scene().time
+            outcome = self.node.relax(method=method, tolerance=1e-12)
+            self.assertTrue(outcome.converged, outcome.message)
+            self.assertLessEqual(outcome.max_torque, 1e-12)
+            self.assertGreater(outcome.iterations, 0)
+            self.assertGreater(outcome.energy_before, 0.5)
+            self.assertLess(outcome.energy_after, 1e-20)
+            scene = self.node.get_scene()
+            self.assertEqual(time, scene.time)
+            corners = positions(scene)
+            for a, b in ((0, 1), (1, 2), (2, 0)):
+                self.assertAlmostEqual(math.pi / 2, angle(corners[a], corners[b]), delta=1e-10)
+
+    def test_particles_are_at_rest_afterwards(self):
+        add_octant(self.node, damping=0.5)
+        self.node.step(100)
+        self.node.relax()
+        scene = self.node.get_scene()
+        self.assertEqual(0, np.abs(angular_velocities(scene)).max())
+        report = self.node.step(0).energies
+        self.assertEqual((0, 0), (report.kinetic, report.dissipated))
+        self.node.step(100)
+        np.testing.assert_allclose(positions(self.node.get_scene()), positions(scene), atol=1e-8)
+
+    def test_energies_before_and_after_are_those_of_the_scene(self):
+        add_random_scene(self.node, seed=1)
+        before = self.node.step(0).energies.potential
+        outcome = self.node.relax()
+        self.assertAlmostEqual(before, outcome.energy_before, delta=1e-12 * before)
+        after = self.node.step(0).energies.potential
+        self.assertAlmostEqual(after, outcome.energy_after, delta=1e-12 * before)
+        self.assertLess(after, 0.9 * before)
+
+    def test_the_same_every_time(self):
+        for method in METHODS:
+            self.node.clear()
+            add_random_scene(self.node, seed=2, particles=10, springs=10)
+            places = []
+            for _ in range(2):
+                self.node.reset()
+                self.node.relax(method=method)
+                places.append(exact(self.node.get_scene().particles))
+            self.assertEqual(*places)
+
+    def test_newton_is_the_default(self):
+        add_octant(self.node, damping=0)
+        iterations = [self.relaxed_anew(method).iterations for method in ('', *METHODS)]
+        self.assertEqual(iterations[0], iterations[1])
+        self.assertLess(iterations[1], iterations[2])
+
+    def relaxed_anew(self, method):
+        self.node.reset()
+        return self.node.relax(method=method)
+
+    def test_the_default_tolerance_is_a_billionth_of_the_largest_stiffness(self):
+        a, b = self.node.add_particles([particle((1, 0, 0)), particle((0, 1, 0))]).ids
+        off = 1e-7
+        for stiffness in (1, 1e3):
+            for share in (0.9, 1.1):
+                self.node.add_springs(angle_springs=[
+                    angle_spring([a, b], stiffness, rest_angle=math.pi / 2 - off),
+                    angle_spring([a, b], stiffness * off * 1e-2 * share / off, rest_angle=0)])
+                self.node.remove_springs(self.node.get_scene().angle_spring_ids)
+
+    def test_nothing_to_do(self):
+        self.assertTrue(self.node.relax().converged)
+        self.node.add_particles([particle(p) for p in ((1, 0, 0), (0, 3, 4))])
+        before = self.node.get_scene()
+        self.assertTrue(self.node.relax().converged)
+        self.assertEqual(exact(before), exact(self.node.get_scene()))
+
+
+class TestEnd(NodeTest):
+    def test_a_tolerance_that_rounding_cannot_reach(self):
+        for method in METHODS:
+            self.node.clear()
+            add_random_scene(self.node, seed=3, particles=10, springs=10)
+            outcome = self.node.relax(method=method, tolerance=1e-30)
+            self.assertFalse(outcome.converged)
+            self.assertGreater(outcome.max_torque, 1e-30)
+            self.assertLess(outcome.max_torque, 1e-9)
+            floor = '%.2g' % outcome.max_torque
+            self.assertRegex(outcome.message, 'rounding')
+            self.assertIn(floor.split('e')[0][0], outcome.message)
+            self.assertIn('e' + floor.split('e')[1], outcome.message)
+
+    def test_max_time(self):
+        add_knot(self.node)
+        before = self.node.step(0).energies.potential
+        outcome = self.node.relax(method='dynamics', tolerance=1e-30, max_time=0.3)
+        self.assertFalse(outcome.converged)
+        self.assertIn('max_time', outcome.message)
+        self.assertGreaterEqual(outcome.wall_time, 0.3)
+        self.assertLess(outcome.energy_after, before)
+        self.assertAlmostEqual(outcome.energy_after, self.node.step(0).energies.potential,
+                               delta=1e-9 * before)
+        self.assertEqual(0, np.abs(angular_velocities(self.node.get_scene())).max())
+
+
+class TestRefusals(NodeTest):
+    def test_bad_requests(self):
+        add_octant(self.node, damping=0.5)
+        self.node.step(50)
+        before = self.node.get_scene()
+        for fields, words in (({'method': 'magic'}, ('method', 'magic', 'allowed')),
+                              ({'keep_orientation': True}, ('keep_orientation', 'allowed')),
+                              ({'tolerance': -1}, ('tolerance', '-1', 'allowed')),
+                              ({'tolerance': math.nan}, ('tolerance', 'nan', 'allowed')),
+                              ({'max_time': -2}, ('max_time', '-2', 'allowed')),
+                              ({'max_time': math.nan}, ('max_time', 'nan', 'allowed'))):
+            with self.assertRaises(Refused, msg=fields) as refusal:
+                self.node.relax(**fields)
+            for word in words:
+                self.assertIn(word, str(refusal.exception))
+            self.assertEqual(exact(before), exact(self.node.get_scene()))
+        self.node.step(1)
