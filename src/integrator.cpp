@@ -45,15 +45,14 @@ void Integrator::drift(double duration, State& state) const {
 void Integrator::kick(double duration, State& state) {
   system_->evaluate(state.positions, workspace_);
   Points& velocities = state.angular_velocities;
-  if (system_->damped()) {
-    state.dissipated += system_->damp(workspace_, duration / 2, velocities);
+  if (!system_->damping().none()) {
+    state.dissipated +=
+        system_->damping().kick(workspace_.end_gradients, workspace_.torques, duration, velocities);
+    return;
   }
   parallelFor(system_->particleCount(), system_->threads(), [&](std::ptrdiff_t i) {
     velocities.col(i) += duration * system_->inverseMasses()[i] * workspace_.torques.col(i);
   });
-  if (system_->damped()) {
-    state.dissipated += system_->damp(workspace_, duration / 2, velocities);
-  }
 }
 
 }  // namespace spherical_springs::core

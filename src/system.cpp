@@ -17,16 +17,16 @@ System::System(const Scene& scene, Options options) : options_(options) {
   const auto count = static_cast<Eigen::Index>(particles.size());
   masses_.resize(count);
   inverse_masses_.resize(count);
-  damping_.resize(count);
+  Eigen::VectorXd viscous(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Particle& particle = particles.item(i);
     masses_[i] = particle.mass;
     inverse_masses_[i] = particle.pinned ? 0 : 1 / particle.mass;
-    damping_[i] = particle.damping;
+    viscous[i] = particle.damping;
     any_pinned_ = any_pinned_ || particle.pinned;
-    particles_damped_ = particles_damped_ || (particle.damping > 0 && !particle.pinned);
   }
 
+  std::vector<Damping::Damper> dampers;
   first_end_.assign(count + 1, 0);
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
@@ -37,30 +37,43 @@ System::System(const Scene& scene, Options options) : options_(options) {
         end = static_cast<std::uint32_t>(*particles.find(end));
         ++first_end_[end + 1];
       }
-      if (spring.damping > 0) {
-        damped_springs_.get<Spring>().springs.push_back(springs.size());
-        springs_damped_ = true;
-      }
+      if (spring.damping > 0) addDampers(spring, dampers);
       springs.push_back(spring);
+      end_count_ += Spring::kParticles;
     }
-    end_count_ += springs.size() * Spring::kParticles;
   });
 
   for (Eigen::Index i = 0; i < count; ++i) first_end_[i + 1] += first_end_[i];
   std::vector<std::uint32_t> next(first_end_.begin(), first_end_.end() - 1);
   ends_.resize(end_count_);
-  std::uint32_t slot = 0;
+  std::vector<std::uint32_t> end_particles;
   forEachKind([&](auto kind) {
     for (const auto& spring : springs<typename decltype(kind)::type>()) {
-      for (const std::uint32_t end : spring.particles) ends_[next[end]++] = slot++;
+      for (const std::uint32_t particle : spring.particles) {
+        ends_[next[particle]++] = static_cast<std::uint32_t>(end_particles.size());
+        end_particles.push_back(particle);
+      }
     }
   });
+  if (dampers.empty()) end_particles.clear();
+  damping_ = Damping(inverse_masses_, viscous, std::move(dampers), std::move(end_particles));
+}
+
+template <class Spring>
+void System::addDampers(const Spring& spring, std::vector<Damping::Damper>& dampers) const {
+  const auto first_end = static_cast<std::uint32_t>(end_count_);
+  if (options_.spring_damping == SpringDamping::relative) {
+    dampers.push_back({first_end, Spring::kParticles, spring.damping});
+    return;
+  }
+  for (std::uint32_t j = 0; j < Spring::kParticles; ++j) {
+    dampers.push_back({first_end + j, 1, spring.damping});
+  }
 }
 
 bool System::conservesAngularMomentum() const {
-  const bool damped_alone =
-      particles_damped_ || (springs_damped_ && options_.spring_damping == SpringDamping::own);
-  return !any_pinned_ && !damped_alone;
+  const bool by_parts = damping_.hasDampers() && options_.spring_damping == SpringDamping::own;
+  return !any_pinned_ && !damping_.hasViscous() && !by_parts;
 }
 
 double System::largestStiffness() const {
@@ -75,7 +88,8 @@ double System::largestStiffness() const {
 
 void System::evaluate(const Points& positions, Workspace& workspace) const {
   workspace.end_torques.resize(end_count_);
-  if (springs_damped_) workspace.end_gradients.resize(end_count_);
+  const bool keep_gradients = damping_.hasDampers();
+  if (keep_gradients) workspace.end_gradients.resize(end_count_);
   std::size_t offset = 0;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
@@ -86,7 +100,7 @@ void System::evaluate(const Points& positions, Workspace& workspace) const {
       for (std::size_t j = 0; j < Spring::kParticles; ++j) {
         const std::size_t slot = offset + s * Spring::kParticles + j;
         workspace.end_torques[slot] = pull * c.gradient[j];
-        if (springs_damped_) workspace.end_gradients[slot] = c.gradient[j];
+        if (keep_gradients) workspace.end_gradients[slot] = c.gradient[j];
       }
     });
     offset += list.size() * Spring::kParticles;
@@ -100,95 +114,6 @@ void System::evaluate(const Points& positions, Workspace& workspace) const {
     }
     workspace.torques.col(i) = torque;
   });
-}
-
-double System::damp(const Workspace& workspace, double duration,
-                    Points& angular_velocities) const {
-  double taken = 0;
-  if (particles_damped_) taken += dampViscously(duration / 2, angular_velocities);
-  if (springs_damped_) {
-    taken += dampSprings(workspace, duration / 2, false, angular_velocities);
-    taken += dampSprings(workspace, duration / 2, true, angular_velocities);
-  }
-  if (particles_damped_) taken += dampViscously(duration / 2, angular_velocities);
-  return taken;
-}
-
-double System::dampViscously(double duration, Points& angular_velocities) const {
-  double taken = 0;
-  for (Eigen::Index i = 0; i < particleCount(); ++i) {
-    const double exponent = -damping_[i] * inverse_masses_[i] * duration;
-    if (exponent == 0) continue;
-    auto velocity = angular_velocities.col(i);
-    taken -= 0.5 * masses_[i] * velocity.squaredNorm() * std::expm1(2 * exponent);
-    velocity *= std::exp(exponent);
-  }
-  return taken;
-}
-
-namespace {
-
-/// The exact flow of one damper on some ends: the rate of its condition decays exponentially.
-struct Damper {
-  double rate = 0;      ///< sum of gradient . omega
-  double mobility = 0;  ///< sum of |gradient|^2 / mass
-
-  void add(const Vector3& gradient, const Vector3& velocity, double inverse_mass) {
-    rate += gradient.dot(velocity);
-    mobility += gradient.squaredNorm() * inverse_mass;
-  }
-  /// Impulse along the gradients over `duration` for the coefficient `damping`.
-  double impulse(double damping, double duration) const {
-    return mobility > 0 ? rate * std::expm1(-damping * mobility * duration) / mobility : 0;
-  }
-  double energyTaken(double damping, double duration) const {
-    if (mobility == 0) return 0;
-    return -0.5 * rate * rate * std::expm1(-2 * damping * mobility * duration) / mobility;
-  }
-};
-
-}  // namespace
-
-double System::dampSprings(const Workspace& workspace, double duration, bool backward,
-                           Points& angular_velocities) const {
-  double taken = 0;
-  const auto dampEnds = [&](const std::uint32_t* particles, const Vector3* gradients, int count,
-                            double damping) {
-    Damper damper;
-    for (int j = 0; j < count; ++j) {
-      damper.add(gradients[j], angular_velocities.col(particles[j]), inverse_masses_[particles[j]]);
-    }
-    const double impulse = damper.impulse(damping, duration);
-    taken += damper.energyTaken(damping, duration);
-    for (int j = 0; j < count; ++j) {
-      angular_velocities.col(particles[j]) +=
-          impulse * inverse_masses_[particles[j]] * gradients[j];
-    }
-  };
-  const auto dampSpring = [&](const auto& spring, const Vector3* gradients) {
-    constexpr int kEnds = std::decay_t<decltype(spring)>::kParticles;
-    const std::uint32_t* particles = spring.particles.data();
-    if (options_.spring_damping == SpringDamping::relative) {
-      return dampEnds(particles, gradients, kEnds, spring.damping);
-    }
-    for (int j = 0; j < kEnds; ++j) dampEnds(particles + j, gradients + j, 1, spring.damping);
-  };
-
-  std::size_t offset = backward ? end_count_ : 0;
-  const auto dampKind = [&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& list = springs<Spring>();
-    const auto& damped = damped_springs_.get<Spring>().springs;
-    const std::size_t ends = list.size() * Spring::kParticles;
-    if (backward) offset -= ends;
-    for (std::size_t n = 0; n < damped.size(); ++n) {
-      const std::uint32_t s = damped[backward ? damped.size() - 1 - n : n];
-      dampSpring(list[s], &workspace.end_gradients[offset + s * Spring::kParticles]);
-    }
-    if (!backward) offset += ends;
-  };
-  backward ? forEachKindBackward(dampKind) : forEachKind(dampKind);
-  return taken;
 }
 
 PotentialEnergies System::potential(const Points& positions) const {

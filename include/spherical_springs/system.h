@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "spherical_springs/damping.h"
 #include "spherical_springs/scene.h"
 #include "spherical_springs/sphere.h"
 #include "spherical_springs/springs/kinds.h"
@@ -41,7 +42,7 @@ class System {
   const Eigen::VectorXd& masses() const { return masses_; }
   const Eigen::VectorXd& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
-  bool damped() const { return particles_damped_ || springs_damped_; }
+  const Damping& damping() const { return damping_; }
   /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
   bool conservesAngularMomentum() const;
   double largestStiffness() const;
@@ -63,14 +64,6 @@ class System {
   /// Torques of the springs on each particle, damping apart, into `workspace`.
   void evaluate(const Points& positions, Workspace& workspace) const;
 
-  /// The flow of all damping over `duration` [s] at the positions last evaluated: viscous damping and
-  /// that of each spring, each by its exact flow, one after another and then back in the opposite
-  /// order over half of the duration each. That is symmetric in time, and as a map of momenta
-  /// symmetric and positive, so that however strong the damping, torques still move particles down
-  /// the energy.
-  /// @return the energy taken out [J].
-  double damp(const Workspace& workspace, double duration, Points& angular_velocities) const;
-
   PotentialEnergies potential(const Points& positions) const;
   double kinetic(const Points& angular_velocities) const;
 
@@ -90,19 +83,13 @@ class System {
 
  private:
   template <class Spring>
-  struct DampedSprings {
-    std::vector<std::uint32_t> springs;
-  };
-
-  double dampViscously(double duration, Points& angular_velocities) const;
-  double dampSprings(const Workspace& workspace, double duration, bool backward,
-                     Points& angular_velocities) const;
+  void addDampers(const Spring& spring, std::vector<Damping::Damper>& dampers) const;
 
   Options options_;
-  Eigen::VectorXd masses_, inverse_masses_, damping_;
-  bool particles_damped_ = false, springs_damped_ = false, any_pinned_ = false;
+  Eigen::VectorXd masses_, inverse_masses_;
+  bool any_pinned_ = false;
   SpringLists springs_;
-  PerKind<DampedSprings> damped_springs_;
+  Damping damping_;
   std::size_t end_count_ = 0;
   // The ends of springs at each particle: those of particle i are at ends_[first_end_[i]] and on,
   // so that torques are summed in the same order however many threads do it.

@@ -1,4 +1,4 @@
-"""Long calls: what else may be done meanwhile, and how they end early."""
+"""Long calls: what may be done meanwhile, and how they end early."""
 
 import time
 
@@ -6,72 +6,85 @@ import numpy as np
 from spherical_springs.msg import Status
 
 from node_client import LONG, NodeProcess, NodeTest, Refused
-from scenes import add_knot, angle_spring, angular_velocities, exact, particle, positions
+from scenes import add_knot, angular_velocities, exact, positions
 
 SOON = 1  # [s]
-FOREVER = 4294967295  # steps
+RELAXING_FOR_EVER = {'service': 'relax', 'method': 'dynamics', 'tolerance': 1e-30}
+STEPPING_FOR_EVER = {'service': 'step', 'steps': 4294967295}
+STATES = {'relax': 'relaxing', 'step': 'running'}
 
 
-class LongCallTest(NodeTest):
-    """A knot, and a long ~relax or ~step under way on it."""
+def begin(node, service, **fields):
+    """Begin a long call; return it when it is under way."""
+    with node.listen('status', Status) as statuses:
+        call = node.begin(service, **fields)
+        statuses.first(lambda status: status.state == STATES[service])
+    return call
 
+
+class TestLongCalls(NodeTest):
     def setUp(self):
         super().setUp()
         add_knot(self.node)
-        self.saved = 'knot.json'
-        self.node.save_scene(self.saved)
+        self.node.save_scene('knot.json')
+        self.before = self.node.get_scene()
 
-    def begin(self, service, state, **fields):
-        before = self.node.get_scene()
-        with self.node.listen('status', Status) as statuses:
-            call = self.node.begin(service, **fields)
-            self.addCleanup(call.result, LONG)
-            self.addCleanup(self.node.cancel)
-            statuses.first(lambda status: status.state == state)
-        return before, call
-
-    def begin_relaxing(self):
-        return self.begin('relax', 'relaxing', method='dynamics', tolerance=1e-30)
-
-    def begin_stepping(self):
-        return self.begin('step', 'running', steps=FOREVER)
+    def begin(self, call):
+        future = begin(self.node, **call)
+        self.addCleanup(future.result, LONG)
+        self.addCleanup(self.node.cancel)
+        return future
 
     def cancelled(self, call):
-        """The response of a long call that is cancelled now."""
-        begin = time.monotonic()
+        """The response of a long call that is cancelled now, and leaves the scene at rest."""
+        start = time.monotonic()
         self.node.cancel()
         response = call.result(LONG)
-        self.assertLess(time.monotonic() - begin, SOON)
+        self.assertLess(time.monotonic() - start, SOON)
         self.assertIn('cancelled', response.message)
         self.assertEqual(0, np.abs(angular_velocities(self.node.get_scene())).max())
         self.assertEqual(0, self.node.step(0).energies.kinetic)
         return response
 
-
-class TestRelaxing(LongCallTest):
-    def test_cancelled(self):
-        before, call = self.begin_relaxing()
-        response = self.cancelled(call)
+    def test_a_cancelled_relaxation(self):
+        response = self.cancelled(self.begin(RELAXING_FOR_EVER))
         self.assertFalse(response.converged)
         self.assertLess(response.energy_after, response.energy_before)
         self.assertAlmostEqual(response.energy_after, self.node.step(0).energies.potential,
                                delta=1e-9 * response.energy_before)
-        self.assertEqual(before.time, self.node.get_scene().time)
+        self.assertEqual(self.before.time, self.node.get_scene().time)
 
-    def test_reads_are_answered_and_changes_refused(self):
-        before, call = self.begin_relaxing()
-        self.assert_reads_and_refusals(before)
-        self.cancelled(call)
-        self.node.step(1)
+    def test_cancelled_steps(self):
+        response = self.cancelled(self.begin(STEPPING_FOR_EVER))
+        steps = round(response.time * 1000)
+        self.assertIn(str(steps), response.message)
+        self.assertEqual(response.time, self.node.get_scene().time)
+        with self.node.listen('status', Status) as statuses:
+            statuses.first(lambda status: status.steps == steps and status.state == 'paused')
 
-    def assert_reads_and_refusals(self, before):
+    def test_what_may_be_done_meanwhile(self):
+        for long_call in (RELAXING_FOR_EVER, STEPPING_FOR_EVER):
+            call = self.begin(long_call)
+            self.assert_reads_are_answered()
+            self.assert_changes_are_refused('~' + long_call['service'])
+            self.cancelled(call)
+            self.assert_same_scene_but_for_places()
+            self.node.step(1)
+
+    def assert_same_scene_but_for_places(self):
         scene = self.node.get_scene()
-        self.assertEqual(before.particle_ids, scene.particle_ids)
-        self.assertEqual(exact(before.angle_springs), exact(scene.angle_springs))
+        self.assertEqual(self.before.particle_ids, scene.particle_ids)
+        self.assertEqual(self.before.angle_spring_ids, scene.angle_spring_ids)
+        self.assertEqual(self.before.angle_springs, scene.angle_springs)
+
+    def assert_reads_are_answered(self):
+        self.assert_same_scene_but_for_places()
         self.assertGreater(self.node.step(0).energies.potential, 0)
         self.node.save_scene('meanwhile.json')
-        particles, springs = scene.particles[:2], scene.angle_springs[:1]
-        ids, spring_ids = scene.particle_ids[:2], scene.angle_spring_ids[:1]
+
+    def assert_changes_are_refused(self, reason):
+        ids, particles = self.before.particle_ids[:2], self.before.particles[:2]
+        spring_ids, springs = self.before.angle_spring_ids[:1], self.before.angle_springs[:1]
         for service, fields in (
                 ('add_particles', {'particles': particles}),
                 ('set_particles', {'ids': ids, 'particles': particles}),
@@ -79,11 +92,35 @@ class TestRelaxing(LongCallTest):
                 ('add_springs', {'angle_springs': springs}),
                 ('set_springs', {'angle_spring_ids': spring_ids, 'angle_springs': springs}),
                 ('remove_springs', {'angle_spring_ids': spring_ids}),
-                ('load_scene', {'path': self.saved}), ('clear', {}), ('reset', {}),
+                ('load_scene', {'path': 'knot.json'}), ('clear', {}), ('reset', {}),
                 ('set_running', {'data': True}), ('set_running', {'data': False}),
                 ('step', {'steps': 1}), ('relax', {})):
-            with self.assertRaisesRegex(Refused, 'under way', msg=service):
+            with self.assertRaisesRegex(Refused, reason + ' is under way', msg=service):
                 getattr(self.node, service)(**fields)
-        scene = self.node.get_scene()
-        self.assertEqual(before.particle_ids, scene.particle_ids)
-        self.assertEqual(exact(before.angle_springs), exact(scene.angle_springs))
+
+    def test_progress_is_seen(self):
+        self.begin(RELAXING_FOR_EVER)
+        with self.node.listen('status', Status) as statuses:
+            statuses.first(lambda status: 0 < status.relax_progress <= 1)
+        self.assertGreater(
+            np.abs(positions(self.node.get_scene()) - positions(self.before)).max(), 1e-3)
+
+    def test_the_node_ends_when_told_to(self):
+        for long_call in (RELAXING_FOR_EVER, STEPPING_FOR_EVER):
+            with NodeProcess(running='false') as process:
+                node = process.client()
+                add_knot(node)
+                call = begin(node, **long_call)
+                self.assertEqual(0, process.stop(), process.output())
+                self.assertIsNotNone(call.exception(LONG) or call.result())
+
+
+class TestNothingUnderWay(NodeTest):
+    def test_cancelling_changes_nothing(self):
+        add_knot(self.node, particles=10)
+        self.node.step(10)
+        before = self.node.get_scene()
+        self.assertIn('nothing', self.node.cancel().message)
+        self.assertEqual(exact(before), exact(self.node.get_scene()))
+        self.assertAlmostEqual(before.time + 5e-3, self.node.step(5).time, delta=1e-12)
+        self.assertTrue(self.node.relax().converged)

@@ -1,0 +1,60 @@
+// Damping of particles and of springs, and its flow together with constant torques.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "spherical_springs/sphere.h"
+
+namespace spherical_springs::core {
+
+/// Torques that are linear in the velocities while positions stand still:
+/// M d omega / dt = tau - D omega, with D = viscous coefficients + sum of c g g^T over dampers.
+class Damping {
+ public:
+  /// One damper: coefficient c [N m s/rad] on the rate sum of g . omega over some ends of springs.
+  /// `first_end` and on are places in the list of gradients g, one an end.
+  struct Damper {
+    std::uint32_t first_end, end_count;
+    double coefficient;
+  };
+
+  Damping() = default;
+  /// `inverse_masses`: 0 where pinned. `viscous`: one coefficient a particle. `end_particles`: the
+  /// particle of each end of a spring.
+  Damping(const Eigen::VectorXd& inverse_masses, const Eigen::VectorXd& viscous,
+          std::vector<Damper> dampers, std::vector<std::uint32_t> end_particles);
+
+  bool none() const { return !viscous_any_ && dampers_.empty(); }
+  bool hasViscous() const { return viscous_any_; }
+  bool hasDampers() const { return !dampers_.empty(); }
+
+  /// A bound of the fastest decay [1/s], by Gershgorin's circles of M^-1 D.
+  double fastestRate(const std::vector<Vector3>& gradients) const;
+
+  /// Velocities after `duration` [s], which may be negative, under `torques` [N m] and the damping,
+  /// at the positions of `gradients`. Where the damping is slow against the duration this is the
+  /// exact flow, to rounding; where it is fast, a composition of second order that is stable for
+  /// any coefficient.
+  /// @return the energy that damping took out [J].
+  double kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
+              Points& velocities) const;
+
+ private:
+  void addRate(const std::vector<Vector3>& gradients, const Points& velocities, double factor,
+               Points& sum) const;
+  double kickBySeries(const std::vector<Vector3>& gradients, const Points& torques, double duration,
+                      Points& velocities) const;
+  double sweep(const std::vector<Vector3>& gradients, double duration, Points& velocities) const;
+  double dampViscously(double duration, Points& velocities) const;
+  double dampEnds(const Damper& damper, const std::vector<Vector3>& gradients, double duration,
+                  Points& velocities) const;
+
+  Eigen::VectorXd inverse_masses_, viscous_;
+  bool viscous_any_ = false;
+  std::vector<Damper> dampers_;
+  std::vector<std::uint32_t> end_particles_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,141 @@
+#include "spherical_springs/damping.h"
+
+#include <cmath>
+#include <utility>
+
+namespace spherical_springs::core {
+
+Damping::Damping(const Eigen::VectorXd& inverse_masses, const Eigen::VectorXd& viscous,
+                 std::vector<Damper> dampers, std::vector<std::uint32_t> end_particles)
+    : inverse_masses_(inverse_masses),
+      viscous_(viscous),
+      viscous_any_((viscous.array() * inverse_masses.array() > 0).any()),
+      dampers_(std::move(dampers)),
+      end_particles_(std::move(end_particles)) {}
+
+double Damping::fastestRate(const std::vector<Vector3>& gradients) const {
+  Eigen::VectorXd rows = viscous_.cwiseProduct(inverse_masses_);
+  for (const Damper& damper : dampers_) {
+    const auto lever = [&](std::uint32_t end) {
+      return gradients[end].norm() * std::sqrt(inverse_masses_[end_particles_[end]]);
+    };
+    double sum = 0;
+    for (std::uint32_t j = 0; j < damper.end_count; ++j) sum += lever(damper.first_end + j);
+    for (std::uint32_t j = 0; j < damper.end_count; ++j) {
+      const std::uint32_t end = damper.first_end + j;
+      rows[end_particles_[end]] += damper.coefficient * sum * lever(end);
+    }
+  }
+  return rows.size() > 0 ? rows.maxCoeff() : 0;
+}
+
+double Damping::kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
+                     Points& velocities) const {
+  constexpr double kFast = 1;  // decays within the duration
+  if (fastestRate(gradients) * std::abs(duration) <= kFast) {
+    return kickBySeries(gradients, torques, duration, velocities);
+  }
+  double taken = sweep(gradients, duration / 2, velocities);
+  velocities += duration * torques * inverse_masses_.asDiagonal();
+  taken += sweep(gradients, duration / 2, velocities);
+  return taken;
+}
+
+/// `sum` += factor M^-1 D velocities.
+void Damping::addRate(const std::vector<Vector3>& gradients, const Points& velocities,
+                      double factor, Points& sum) const {
+  if (viscous_any_) {
+    sum += factor * velocities * viscous_.cwiseProduct(inverse_masses_).asDiagonal();
+  }
+  for (const Damper& damper : dampers_) {
+    double rate = 0;
+    for (std::uint32_t j = 0; j < damper.end_count; ++j) {
+      const std::uint32_t end = damper.first_end + j;
+      rate += gradients[end].dot(velocities.col(end_particles_[end]));
+    }
+    for (std::uint32_t j = 0; j < damper.end_count; ++j) {
+      const std::uint32_t end = damper.first_end + j;
+      const std::uint32_t particle = end_particles_[end];
+      sum.col(particle) +=
+          (factor * damper.coefficient * rate * inverse_masses_[particle]) * gradients[end];
+    }
+  }
+}
+
+// Taylor's series in time: each derivative of the velocities is -M^-1 D times the one before.
+double Damping::kickBySeries(const std::vector<Vector3>& gradients, const Points& torques,
+                             double duration, Points& velocities) const {
+  constexpr int kTerms = 20;  // 1 / 20! is below rounding
+  const Points start = velocities;
+  Points term = duration * torques * inverse_masses_.asDiagonal();
+  addRate(gradients, velocities, -duration, term);
+  Points path = duration * velocities;  // the integral of the velocities
+  velocities += term;
+  for (int n = 2; n <= kTerms + 1; ++n) {
+    path += duration / n * term;
+    if (n > kTerms || term.isZero(0)) break;
+    Points next = Points::Zero(3, term.cols());
+    addRate(gradients, term, -duration / n, next);
+    velocities += next;
+    term = std::move(next);
+  }
+  // What the torques did, less what came to be kinetic energy; a difference of momenta, not of
+  // energies, to keep its digits: d (m w^2 / 2) = m dw . (w + w') / 2.
+  double taken = torques.cwiseProduct(path).sum();
+  for (Eigen::Index i = 0; i < velocities.cols(); ++i) {
+    if (inverse_masses_[i] == 0) continue;
+    taken -= 0.5 / inverse_masses_[i] *
+             (velocities.col(i) - start.col(i)).dot(velocities.col(i) + start.col(i));
+  }
+  return taken;
+}
+
+// One damper after another, each by its exact flow, and back in the opposite order: symmetric in
+// time, and as a map of momenta symmetric and positive, so that however strong the damping, torques
+// still move particles down the energy.
+double Damping::sweep(const std::vector<Vector3>& gradients, double duration,
+                      Points& velocities) const {
+  const double half = duration / 2;
+  double taken = dampViscously(half, velocities);
+  for (auto d = dampers_.begin(); d != dampers_.end(); ++d) {
+    taken += dampEnds(*d, gradients, half, velocities);
+  }
+  for (auto d = dampers_.rbegin(); d != dampers_.rend(); ++d) {
+    taken += dampEnds(*d, gradients, half, velocities);
+  }
+  return taken + dampViscously(half, velocities);
+}
+
+double Damping::dampViscously(double duration, Points& velocities) const {
+  if (!viscous_any_) return 0;
+  double taken = 0;
+  for (Eigen::Index i = 0; i < velocities.cols(); ++i) {
+    const double exponent = -viscous_[i] * inverse_masses_[i] * duration;
+    if (exponent == 0) continue;
+    taken -= 0.5 / inverse_masses_[i] * velocities.col(i).squaredNorm() * std::expm1(2 * exponent);
+    velocities.col(i) *= std::exp(exponent);
+  }
+  return taken;
+}
+
+double Damping::dampEnds(const Damper& damper, const std::vector<Vector3>& gradients,
+                         double duration, Points& velocities) const {
+  double rate = 0;
+  double mobility = 0;
+  for (std::uint32_t j = 0; j < damper.end_count; ++j) {
+    const std::uint32_t end = damper.first_end + j;
+    rate += gradients[end].dot(velocities.col(end_particles_[end]));
+    mobility += gradients[end].squaredNorm() * inverse_masses_[end_particles_[end]];
+  }
+  if (mobility == 0) return 0;
+  const double exponent = -damper.coefficient * mobility * duration;
+  const double impulse = rate * std::expm1(exponent) / mobility;
+  for (std::uint32_t j = 0; j < damper.end_count; ++j) {
+    const std::uint32_t end = damper.first_end + j;
+    const std::uint32_t particle = end_particles_[end];
+    velocities.col(particle) += impulse * inverse_masses_[particle] * gradients[end];
+  }
+  return -0.5 * rate * rate * std::expm1(2 * exponent) / mobility;
+}
+
+}  // namespace spherical_springs::core
