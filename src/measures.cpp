@@ -1,7 +1,9 @@
 #include "spherical_springs/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace spherical_springs::core {
 
@@ -58,38 +60,73 @@ double normError(const State& state) {
   return (state.positions.colwise().norm().array() - 1).abs().maxCoeff();
 }
 
-double stableTimeStep(const System& system, const Points& positions) {
-  const Eigen::VectorXd roots = system.inverseMasses().cwiseSqrt();
-  Eigen::VectorXd rows = Eigen::VectorXd::Zero(system.particleCount());
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    for (const Spring& spring : system.springs<Spring>()) {
-      const auto c = condition(spring, System::points(spring, positions));
-      double coupling = 0;
-      for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-        coupling += c.gradient[j].norm() * roots[spring.particles[j]];
-      }
-      for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-        const std::uint32_t particle = spring.particles[j];
-        rows[particle] += spring.stiffness * c.gradient[j].norm() * roots[particle] * coupling;
+namespace {
+
+/// Adds the blocks of a spring's stiffness, in units of acceleration, to the sums of its particles:
+/// those on the diagonal as they are, the norms of the others.
+template <class Spring>
+void addCircles(const Spring& spring, const System& system, const Points& positions,
+                std::vector<Eigen::Matrix2d>& diagonal, Eigen::VectorXd& others) {
+  constexpr std::size_t N = Spring::kParticles;
+  const auto points = System::points(spring, positions);
+  std::array<TangentFrame, N> frames;
+  for (std::size_t j = 0; j < N; ++j) frames[j] = tangentFrame(points[j]);
+  const auto c = tangentCondition(spring, points, frames, Curvature::exact);
+  for (std::size_t i = 0; i < N; ++i) {
+    const std::uint32_t row = spring.particles[i];
+    for (std::size_t j = 0; j < N; ++j) {
+      const std::uint32_t column = spring.particles[j];
+      const double mobility =
+          std::sqrt(system.inverseMasses()[row] * system.inverseMasses()[column]);
+      const Eigen::Matrix2d block =
+          spring.stiffness * mobility *
+          (c.gradient[i] * c.gradient[j].transpose() + c.value * c.hessian[i][j]);
+      if (i == j) {
+        diagonal[row] += block;
+      } else {
+        others[row] += block.norm();
       }
     }
-  });
-  const double squared_frequency = rows.size() > 0 ? rows.maxCoeff() : 0;
-  return squared_frequency > 0 ? 2 / std::sqrt(squared_frequency) : 0;
+  }
 }
 
-double localError(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
+double largestEigenvalue(const Eigen::Matrix2d& m) {
+  const double difference = (m(0, 0) - m(1, 1)) / 2;
+  return (m(0, 0) + m(1, 1)) / 2 + std::hypot(difference, m(0, 1));
+}
+
+}  // namespace
+
+double highestFrequency(const System& system, const Points& positions) {
+  std::vector<Eigen::Matrix2d> diagonal(system.particleCount(), Eigen::Matrix2d::Zero());
+  Eigen::VectorXd others = Eigen::VectorXd::Zero(system.particleCount());
+  forEachKind([&](auto kind) {
+    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+      addCircles(spring, system, positions, diagonal, others);
+    }
+  });
+  double squared = 0;
+  for (Eigen::Index i = 0; i < system.particleCount(); ++i) {
+    squared = std::max(squared, largestEigenvalue(diagonal[i]) + others[i]);
+  }
+  return std::sqrt(squared);
+}
+
+double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions) {
+  return stabilityLimit(method) / highestFrequency(system, positions);
+}
+
+double localError(const std::shared_ptr<const System>& system, IntegrationMethod method,
                   double time_step, const State& state) {
   if (state.positions.cols() == 0) return 0;
   State whole = state;
-  Integrator(system, scheme, time_step).step(whole);
+  makeIntegrator(system, method, time_step)->step(whole);
   State halves = state;
-  Integrator half(system, scheme, time_step / 2);
-  half.step(halves);
-  half.step(halves);
+  const auto half = makeIntegrator(system, method, time_step / 2);
+  half->step(halves);
+  half->step(halves);
   const double difference = (whole.positions - halves.positions).colwise().norm().maxCoeff();
-  return difference / (1 - std::pow(2., -scheme.order));
+  return difference / (1 - std::pow(2., -orderOf(method)));
 }
 
 }  // namespace spherical_springs::core

@@ -94,7 +94,7 @@ void Simulation::placeAtStart() {
 void Simulation::step() {
   account();  // begins before anything moves
   if (!integrator_) {
-    integrator_ = std::make_unique<Integrator>(system(), *settings_.scheme, settings_.time_step);
+    integrator_ = makeIntegrator(system(), settings_.method, settings_.time_step);
   }
   integrator_->step(state_);
 }

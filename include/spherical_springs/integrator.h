@@ -1,47 +1,42 @@
-// Stepping through time by compositions of exact flows.
+// Stepping through time.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "spherical_springs/state.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 
-/// A step as a composition of exact flows: drift[0], kick[0], drift[1], kick[1], ..., drift.back(),
-/// each over its share of the time step. A drift moves particles on great circles at constant
-/// angular velocity; a kick turns the springs' torques into angular velocity, between two halves of
-/// the flow of damping at the same positions.
-struct SplittingScheme {
-  std::string name;
-  int order;
-  std::vector<double> drift, kick;
+enum class IntegrationMethod {
+  euler,          ///< the report's (section 5): speed first, then position; first order, symplectic
+  verlet,         ///< Strang's splitting; second order, symplectic
+  fourth_order,   ///< Blanes and Moan's splitting; symplectic
+  implicit_euler  ///< first order; stable for any step, and takes energy out
 };
 
-/// `euler`: the report's step (section 5), speed first, then position from the new speed: first
-/// order, symplectic. `verlet`: Strang's splitting, second order.
+/// `name`: "euler", "verlet", "fourth_order" or "implicit_euler".
 /// @throw std::invalid_argument for any other name.
-const SplittingScheme& splittingScheme(const std::string& name);
+IntegrationMethod integrationMethod(const std::string& name);
+
+int orderOf(IntegrationMethod method);
+
+/// Largest product of a frequency [rad/s] and a time step [s] that the method bears; infinite for
+/// implicit_euler.
+double stabilityLimit(IntegrationMethod method);
 
 class Integrator {
  public:
-  /// `time_step`: [s], above 0.
-  Integrator(std::shared_ptr<const System> system, const SplittingScheme& scheme, double time_step);
+  virtual ~Integrator() = default;
 
-  /// One step of exactly `time_step`. A function of the state alone, so that the same steps give
-  /// the same bits however they are cut into calls.
-  void step(State& state);
-
- private:
-  void drift(double duration, State& state) const;
-  void kick(double duration, State& state);
-
-  std::shared_ptr<const System> system_;
-  const SplittingScheme& scheme_;
-  double time_step_;
-  System::Workspace workspace_;
+  /// One step. A function of the state alone, so that the same steps give the same bits however
+  /// they are cut into calls.
+  virtual void step(State& state) = 0;
 };
+
+/// `time_step`: [s], above 0.
+std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const System> system,
+                                           IntegrationMethod method, double time_step);
 
 }  // namespace spherical_springs::core

@@ -45,14 +45,16 @@ double maxTorque(const System& system, const State& state);
 /// max | |p| - 1 |
 double normError(const State& state);
 
-/// A time step [s] that a scheme of the composition kind bears here: 2 / (highest frequency), with
-/// the frequency bounded by Gershgorin's circles of the springs' stiffness; 0 where nothing
-/// vibrates.
-double stableTimeStep(const System& system, const Points& positions);
+/// A bound of the highest frequency of small vibrations here [rad/s], by Gershgorin's circles of
+/// the Hessian's blocks; 0 where nothing vibrates.
+double highestFrequency(const System& system, const Points& positions);
+
+/// The largest time step [s] that `method` bears here; infinite where nothing bounds it.
+double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions);
 
 /// Estimated error [rad] of one step from `state`, by the difference from two steps of half the
 /// length.
-double localError(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
+double localError(const std::shared_ptr<const System>& system, IntegrationMethod method,
                   double time_step, const State& state);
 
 }  // namespace spherical_springs::core

@@ -19,7 +19,7 @@ namespace spherical_springs::core {
 class Simulation {
  public:
   struct Settings {
-    const SplittingScheme* scheme = &splittingScheme("verlet");
+    IntegrationMethod method = IntegrationMethod::verlet;
     double time_step = 0.001;  ///< [s]
     System::Options system;
     SceneLimits limits;

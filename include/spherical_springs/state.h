@@ -8,11 +8,12 @@ namespace spherical_springs::core {
 
 /// What changes when time goes on. Columns are particles in the order of their ids.
 struct State {
-  Points positions;           ///< unit vectors
-  Points angular_velocities;  ///< [rad/s], each normal to its position
-  double time = 0;            ///< simulated [s]
-  std::uint64_t steps = 0;    ///< since time was last 0
-  double dissipated = 0;      ///< energy taken out by damping since the account began [J]
+  Points positions;                     ///< unit vectors
+  Points angular_velocities;            ///< [rad/s], each normal to its position
+  double time = 0;                      ///< simulated [s]
+  std::uint64_t steps = 0;              ///< since time was last 0
+  std::uint64_t unconverged_steps = 0;  ///< of an implicit method, likewise
+  double dissipated = 0;                ///< energy taken out by damping since the account began [J]
 };
 
 }  // namespace spherical_springs::core

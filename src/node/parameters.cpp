@@ -52,8 +52,8 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
   const auto anyText = [](const std::string&) { return true; };
   const auto someText = [](const std::string& text) { return !text.empty(); };
   Parameters p;
-  read(node, "time_step", p.time_step, core::Range{1e-12, 1e6, "1e-12 to 1e6 [s]"});
-  read(node, "integrator", p.integrator, {"euler", "verlet"});
+  read(node, "time_step", p.time_step, core::Range{1e-12, kLongestTimeStep, "1e-12 to 1e6 [s]"});
+  read(node, "integrator", p.integrator, {"euler", "verlet", "fourth_order", "implicit_euler"});
   read(node, "publish_rate", p.publish_rate, core::Range{1e-3, 1e4, "0.001 to 10000 [Hz]"});
   read(node, "real_time_factor", p.real_time_factor, core::Range{1e-6, 1e6, "1e-6 to 1e6"});
   read(node, "running", p.running, "true, false", [](bool) { return true; });
@@ -70,7 +70,7 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
 
 core::Simulation::Settings Parameters::simulation() const {
   core::Simulation::Settings settings;
-  settings.scheme = &core::splittingScheme(integrator);
+  settings.method = core::integrationMethod(integrator);
   settings.time_step = time_step;
   settings.system.spring_damping =
       spring_damping == "own" ? core::SpringDamping::own : core::SpringDamping::relative;

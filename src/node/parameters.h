@@ -10,8 +10,10 @@ namespace spherical_springs {
 
 /// The node's parameters, with their defaults.
 struct Parameters {
+  static constexpr double kLongestTimeStep = 1e6;  // [s]
+
   double time_step = 0.001;                 ///< [s]
-  std::string integrator = "verlet";        ///< "euler", "verlet"
+  std::string integrator = "verlet";        ///< as core::integrationMethod has it
   double publish_rate = 30;                 ///< of poses and energies [Hz]
   double real_time_factor = 1;              ///< simulated time / time of the clock
   bool running = true;                      ///< whether time goes on from the start

@@ -2,6 +2,8 @@
 
 #include <geometry_msgs/PoseArray.h>
 
+#include <algorithm>
+
 #include "conversion.h"
 #include "spherical_springs/measures.h"
 
@@ -103,11 +105,12 @@ Status Publisher::status(const core::Runner::Snapshot& snapshot) {
   message.state = nameOf(snapshot);
   message.integrator = parameters_.integrator;
   message.time_step = parameters_.time_step;
-  message.stable_time_step = core::stableTimeStep(system, state.positions);
+  const auto method = core::integrationMethod(parameters_.integrator);
+  message.stable_time_step =
+      std::min(Parameters::kLongestTimeStep, core::stableTimeStep(system, method, state.positions));
   message.real_time_factor = realTimeFactor(state);
   message.step_wall_time = snapshot.step_wall_time;
-  message.local_error = core::localError(
-      snapshot.system, core::splittingScheme(parameters_.integrator), parameters_.time_step, state);
+  message.local_error = core::localError(snapshot.system, method, parameters_.time_step, state);
   message.energy_error = snapshot.account->energyError(core::energies(system, state));
   message.angular_momentum_error = snapshot.account->angularMomentumError(system, state);
   message.norm_error = core::normError(state);

@@ -20,17 +20,16 @@ TangentCondition<2> tangentCondition(const AngleSpring& spring,
                                      const std::array<Vector3, 2>& points,
                                      const std::array<TangentFrame, 2>& frames,
                                      Curvature curvature) {
-  constexpr double kNearestToSingular = 1e-8;
+  constexpr double kNearestToSingular = 1e-12;
   const Arc between = arc(points[0], points[1]);
+  const double angle = std::clamp(between.angle, kNearestToSingular, kPi - kNearestToSingular);
   TangentCondition<2> result;
-  result.value = between.angle - spring.rest_angle;
+  result.value = angle - spring.rest_angle;
   result.gradient[0] = frames[0].transpose() * points[0].cross(between.axis);
   result.gradient[1] = frames[1].transpose() * between.axis.cross(points[1]);
 
-  const double half_angle =
-      std::clamp(between.angle / 2, kNearestToSingular, kPi / 2 - kNearestToSingular);
-  double same_side = -std::tan(half_angle);
-  double opposite_sides = 1 / std::tan(half_angle);
+  double same_side = -std::tan(angle / 2);
+  double opposite_sides = 1 / std::tan(angle / 2);
   if (curvature == Curvature::definite) {
     if (result.value > 0) same_side = 0;
     if (result.value < 0) opposite_sides = 0;

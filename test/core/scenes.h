@@ -125,4 +125,24 @@ inline Scene randomScene(unsigned seed, std::uint32_t particles, int springs_eac
   return sceneOf(list, springs);
 }
 
+/// A chain of many particles, each joined with the next two by springs of every kind.
+inline Scene chainScene(unsigned seed, std::uint32_t count, double damping) {
+  Random random(seed);
+  std::vector<Particle> particles(count);
+  Vector3 place = random.unitVector();
+  for (Particle& particle : particles) {
+    place = (place + 0.2 * random.unitVector()).normalized();
+    particle.position = place;
+  }
+  SpringLists springs;
+  for (std::uint32_t i = 0; i + 2 < count; ++i) {
+    springs.get<AngleSpring>().push_back(random.spring<AngleSpring>({i, i + 1}));
+    springs.get<SolidAngleSpring>().push_back(random.spring<SolidAngleSpring>({i, i + 1, i + 2}));
+    springs.get<OrientedAngleSpring>().push_back(
+        random.spring<OrientedAngleSpring>({i, i + 1, i + 2}));
+    springs.get<AngleSpring>().back().damping = damping;
+  }
+  return sceneOf(particles, springs);
+}
+
 }  // namespace spherical_springs::core::testing

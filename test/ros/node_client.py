@@ -103,6 +103,11 @@ class Listener:
             self._messages.append(message)
             self._arrived.notify_all()
 
+    def all(self):
+        """The messages so far."""
+        with self._arrived:
+            return list(self._messages)
+
     def first(self, condition=lambda message: True, timeout=LONG):
         """The first message so far, or to come, that fulfils the condition."""
         return self.several(1, condition, timeout)[0]

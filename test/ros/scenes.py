@@ -53,6 +53,16 @@ def add_octant(node, damping):
     return ids
 
 
+def add_mixed_octant(node):
+    """Springs of all kinds that do not agree on the shape of an octant, some damped."""
+    ids = add_octant(node, damping=0.05)
+    node.add_springs(
+        angle_springs=[angle_spring(ids[:2], damping=0.2)],
+        solid_angle_springs=[solid_angle_spring(ids, rest_solid_angle=2, damping=0.1)],
+        oriented_angle_springs=[oriented_angle_spring(ids, rest_angle=1, width=1, damping=0.1)])
+    return ids
+
+
 def random_particles(generator, count):
     return [particle(generator.normal(size=3), generator.normal(size=3),
                      mass=generator.uniform(0.5, 2), damping=generator.choice([0, 0.1]),
@@ -90,12 +100,13 @@ def add_random_scene(node, seed, particles=20, springs=30):
 
 
 def add_knot(node, particles=2500):
-    """A tangle that takes far longer to relax than any test lasts."""
+    """A tangle; one of thousands takes far longer to relax than any test lasts."""
     generator = np.random.default_rng(1)
     ids = node.add_particles([particle(p) for p in generator.normal(size=(particles, 3))]).ids
-    pairs = [generator.choice(ids, 2, replace=False) for _ in range(3 * particles)]
+    ends = generator.integers(particles, size=3 * particles)
+    others = (ends + generator.integers(1, particles, size=ends.size)) % particles
     node.add_springs(angle_springs=[
-        angle_spring([int(a), int(b)], rest_angle=1) for a, b in pairs])
+        angle_spring([ids[a], ids[b]], rest_angle=1) for a, b in zip(ends, others)])
 
 
 def exact(messages):

@@ -37,6 +37,8 @@ constexpr bool nearlyUndefined(const AngleSpring&, const std::array<Vector3, 2>&
 /// At coinciding or antipodal points the gradient is along the fixed axis of `arc`.
 Condition<2> condition(const AngleSpring& spring, const std::array<Vector3, 2>& points);
 
+/// Within 1e-12 of coinciding or antipodal, as if at that distance, so that the product of value
+/// and Hessian keeps its limit for a rest angle of 0 or pi.
 TangentCondition<2> tangentCondition(const AngleSpring& spring,
                                      const std::array<Vector3, 2>& points,
                                      const std::array<TangentFrame, 2>& frames,

@@ -16,6 +16,11 @@ class TangentEnergy {
 
   TangentEnergy(const System& system, const Points& positions);
 
+  /// With inertia / 2 [J/rad^2] times the squared distance of each particle from a target added,
+  /// for a step of implicit integration. Targets and positions are to be set before use.
+  TangentEnergy(const System& system, Eigen::VectorXd inertia);
+  void setTargets(const Points& targets) { targets_ = targets; }
+
   Eigen::Index unknowns() const { return 2 * static_cast<Eigen::Index>(free_.size()); }
   const Points& positions() const { return positions_; }
   double value() const { return value_; }                        ///< [J]
@@ -50,6 +55,9 @@ class TangentEnergy {
   /// Where the columns of a 2 x 2 block begin among the matrix's values; -1: not stored.
   using Block = std::array<int, 2>;
 
+  void findFree();
+  void addInertia();
+  void addInertiaHessian(Curvature curvature);
   void buildPattern();
   Block block(Eigen::Index row, Eigen::Index column) const;
   void add(const Block& block, bool diagonal, const Eigen::Matrix2d& values);
@@ -57,13 +65,16 @@ class TangentEnergy {
   const System& system_;
   std::vector<Eigen::Index> free_;     // particle of each free one
   std::vector<Eigen::Index> unknown_;  // free index of each particle, or -1
+  Eigen::VectorXd inertia_;            // none in a relaxation
+  Points targets_;
   Points positions_;
   std::vector<TangentFrame> frames_;
   System::Workspace workspace_;
   double value_ = 0;
   Eigen::VectorXd gradient_;
   Matrix hessian_;
-  std::vector<Block> blocks_;  // of each pair of ends of each spring, in the order of use
+  // Of the diagonal, and of each pair of ends of each spring, in the order of use.
+  std::vector<Block> diagonal_blocks_, blocks_;
 };
 
 }  // namespace spherical_springs::core

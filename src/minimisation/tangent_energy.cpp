@@ -7,15 +7,25 @@
 
 namespace spherical_springs::core {
 
-TangentEnergy::TangentEnergy(const System& system, const Points& positions)
-    : system_(system), unknown_(system.particleCount(), -1), frames_(system.particleCount()) {
-  for (Eigen::Index i = 0; i < system.particleCount(); ++i) {
-    if (system.pinned(i)) continue;
+TangentEnergy::TangentEnergy(const System& system, const Points& positions) : system_(system) {
+  findFree();
+  moveTo(positions);
+}
+
+TangentEnergy::TangentEnergy(const System& system, Eigen::VectorXd inertia)
+    : system_(system), inertia_(std::move(inertia)) {
+  findFree();
+}
+
+void TangentEnergy::findFree() {
+  unknown_.assign(system_.particleCount(), -1);
+  frames_.resize(system_.particleCount());
+  for (Eigen::Index i = 0; i < system_.particleCount(); ++i) {
+    if (system_.pinned(i)) continue;
     unknown_[i] = static_cast<Eigen::Index>(free_.size());
     free_.push_back(i);
   }
   gradient_.resize(unknowns());
-  moveTo(positions);
 }
 
 double TangentEnergy::maxTorque() const {
@@ -40,15 +50,23 @@ void TangentEnergy::moveTo(const Points& positions) {
   positions_ = positions;
   value_ = system_.potential(positions_).total();
   system_.evaluate(positions_, workspace_);
+  if (inertia_.size() > 0) addInertia();
   parallelFor(system_.particleCount(), system_.threads(), [&](std::ptrdiff_t i) {
     const Vector3 p = positions_.col(i);
-    frames_[i].col(0) = perpendicular(p);
-    frames_[i].col(1) = p.cross(frames_[i].col(0));
+    frames_[i] = tangentFrame(p);
     if (unknown_[i] < 0) return;
     // torque = -p x grad, and grad is tangent, so grad = p x torque
     gradient_.segment<2>(2 * unknown_[i]) =
         frames_[i].transpose() * p.cross(workspace_.torques.col(i));
   });
+}
+
+void TangentEnergy::addInertia() {
+  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
+    const Arc way = arc(positions_.col(i), targets_.col(i));
+    value_ += 0.5 * inertia_[i] * way.angle * way.angle;
+    workspace_.torques.col(i) += inertia_[i] * way.angle * way.axis;
+  }
 }
 
 namespace {
@@ -95,6 +113,7 @@ void TangentEnergy::buildPattern() {
   hessian_.resize(unknowns(), unknowns());
   hessian_.setFromTriplets(entries.begin(), entries.end());
 
+  for (std::size_t f = 0; f < free_.size(); ++f) diagonal_blocks_.push_back(block(f, f));
   forEachKind([&](auto kind) {
     for (const auto& spring : system_.springs<typename decltype(kind)::type>()) {
       forEachBlock(spring, unknown_,
@@ -146,7 +165,19 @@ const TangentEnergy::Matrix& TangentEnergy::hessian(Curvature curvature) {
                    });
     }
   });
+  if (inertia_.size() > 0) addInertiaHessian(curvature);
   return hessian_;
+}
+
+// The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
+void TangentEnergy::addInertiaHessian(Curvature curvature) {
+  for (std::size_t f = 0; f < free_.size(); ++f) {
+    const Eigen::Index i = free_[f];
+    const auto c = tangentCondition(AngleSpring(), {positions_.col(i), targets_.col(i)},
+                                    {frames_[i], frames_[i]}, curvature);
+    add(diagonal_blocks_[f], true,
+        inertia_[i] * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]));
+  }
 }
 
 Eigen::VectorXd TangentEnergy::particleStiffness() const {
@@ -160,6 +191,7 @@ Eigen::VectorXd TangentEnergy::particleStiffness() const {
       }
     }
   });
+  if (inertia_.size() > 0) stiffness += inertia_;
   const double largest = stiffness.size() > 0 ? stiffness.maxCoeff() : 0;
   return stiffness.cwiseMax(largest > 0 ? kLeastShare * largest : 1);
 }

@@ -7,8 +7,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "fire.h"
-#include "newton.h"
+#include "minimisation/fire.h"
+#include "minimisation/newton.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::core {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+
+#include "../minimisation/newton.h"
+#include "../minimisation/tangent_energy.h"
+#include "spherical_springs/integrator.h"
+
+namespace spherical_springs::core {
+
+/// Each step minimises the springs' energy + sum of m d^2 / (2 dt^2), with d the distance from
+/// where inertia alone would carry the particle: large steps in the sense of Baraff and Witkin
+/// 1998.
+class ImplicitEuler : public Integrator {
+ public:
+  ImplicitEuler(std::shared_ptr<const System> system, double time_step);
+  void step(State& state) override;
+
+ private:
+  void damp(State& state);
+  Points inertialPositions(const State& state) const;
+  bool minimise(const Points& positions, const Points& targets);
+  void takeVelocities(const Points& targets, State& state) const;
+  void boundEnergy(double most, State& state) const;
+
+  std::shared_ptr<const System> system_;
+  double time_step_;
+  System::Workspace workspace_;
+  TangentEnergy energy_;
+  Newton newton_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,119 @@
+import math
+
+import rospy
+from spherical_springs.msg import Status
+
+from node_client import NodeTest
+from scenes import add_knot, add_octant, add_random_scene, angle_spring, particle
+
+
+class StatusTest(NodeTest):
+    def status(self, condition=lambda status: True):
+        with self.node.listen('status', Status) as statuses:
+            return statuses.first(condition)
+
+
+class TestTopic(StatusTest):
+    def test_a_late_listener_gets_the_last_one(self):
+        latched = self.status(lambda status: status._connection_header['latching'] == '1')
+        self.assertLessEqual(latched.header.stamp, rospy.Time.now())
+        self.assertEqual('map', latched.header.frame_id)
+
+    def test_comes_again_and_again(self):
+        with self.node.listen('status', Status) as statuses:
+            stamps = [status.header.stamp for status in statuses.several(4)]
+        self.assertEqual(sorted(set(stamps)), stamps)
+
+    def test_state(self):
+        add_knot(self.node)
+        with self.node.listen('status', Status) as statuses:
+            def await_state(state):
+                since = rospy.Time.now()
+                return statuses.first(lambda s: s.state == state and s.header.stamp > since)
+
+            await_state('paused')
+            self.node.set_running(True)
+            await_state('running')
+            self.node.set_running(False)
+            await_state('paused')
+            call = self.node.begin('relax', method='dynamics', tolerance=1e-30)
+            statuses.first(lambda status: status.state == 'relaxing')
+            self.node.cancel()
+            call.result()
+            await_state('paused')
+
+    def test_message_is_the_last_thing_worth_telling(self):
+        add_octant(self.node, damping=0)
+        told = self.node.relax().message
+        self.assertNotEqual('', told)
+        self.status(lambda status: told in status.message)
+
+
+class TestFields(StatusTest):
+    def test_counts(self):
+        ids = self.node.add_particles([particle((1, 2, i)) for i in range(4)]).ids
+        self.node.add_springs(angle_springs=[angle_spring(ids[:2])] * 3)
+        status = self.status(lambda status: status.angle_springs == 3)
+        self.assertEqual((4, 3, 0, 0), self.counts(status))
+        self.node.clear()
+        add_random_scene(self.node, seed=1, particles=6, springs=5)
+        self.node.remove_springs([], [], self.node.get_scene().oriented_angle_spring_ids[:1])
+        status = self.status(lambda status: status.oriented_angle_springs == 4)
+        self.assertEqual((6, 5, 5, 4), self.counts(status))
+
+    def counts(self, status):
+        return (status.particles, status.angle_springs, status.solid_angle_springs,
+                status.oriented_angle_springs)
+
+    def test_settings(self):
+        status = self.status()
+        self.assertEqual(('verlet', 1e-3), (status.integrator, status.time_step))
+
+    def test_time_and_steps(self):
+        self.node.step(300)
+        status = self.status(lambda status: status.steps == 300)
+        self.assertEqual(self.node.get_scene().time, status.time)
+        self.node.reset()
+        self.assertEqual(0, self.status(lambda status: status.steps == 0).time)
+
+    def test_of_a_pair_at_the_end_of_its_swing(self):
+        stiffness, mass, deviation = 3, 2, 0.25
+        ids = self.node.add_particles([particle((1, 0, 0), mass=mass),
+                                       particle((0, 1, 0), mass=mass)]).ids
+        self.node.add_springs(angle_springs=[
+            angle_spring(ids, stiffness, rest_angle=math.pi / 2 - deviation)])
+        status = self.status(lambda status: status.angle_springs == 1)
+        self.assertAlmostEqual(stiffness * deviation, status.max_torque, delta=1e-14)
+        frequency = math.sqrt(2 * stiffness / mass)
+        self.assertAlmostEqual(2 / frequency, status.stable_time_step, delta=1e-6)
+        # A step and two half ones differ by the third order of the step.
+        acceleration = stiffness * deviation / mass
+        self.assertLess(status.local_error, acceleration * frequency * 1e-3 ** 3)
+        self.assertEqual(0, status.energy_error)
+        self.assertEqual(0, status.angular_momentum_error)
+        self.assertEqual(0, status.relax_progress)
+
+    def test_errors_of_an_undamped_scene(self):
+        add_octant(self.node, damping=0)
+        self.node.step(2000)
+        status = self.status(lambda status: status.steps == 2000)
+        self.assertGreater(status.energy_error, 0)
+        self.assertLess(status.energy_error, 1e-5)
+        self.assertLess(status.angular_momentum_error, 1e-12)
+        self.assertLess(status.norm_error, 1e-14)
+        self.assertGreater(status.local_error, 0)
+        self.assertLess(status.local_error, 1e-6)
+        self.assertGreater(status.step_wall_time, 0)
+        self.assertLess(status.step_wall_time, 1)
+
+    def test_errors_begin_anew_with_the_account(self):
+        add_octant(self.node, damping=0)
+        self.node.step(2000)
+        self.status(lambda status: status.energy_error > 0)
+        self.node.reset()
+        self.status(lambda status: status.energy_error == 0)
+
+    def test_real_time_factor(self):
+        self.status(lambda status: status.real_time_factor == 0)
+        self.node.set_running(True)
+        self.status(lambda status: 0.1 < status.real_time_factor < 2)
