@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "spherical_springs/range.h"
+
 namespace spherical_springs::core {
 
 Energies energies(const System& system, const State& state) {
@@ -127,6 +129,44 @@ double localError(const std::shared_ptr<const System>& system, IntegrationMethod
   half->step(halves);
   const double difference = (whole.positions - halves.positions).colwise().norm().maxCoeff();
   return difference / (1 - std::pow(2., -orderOf(method)));
+}
+
+namespace {
+
+std::string warningOf(const Measures& measures, IntegrationMethod method, double time_step,
+                      const State& state) {
+  constexpr double kBlownUp = 0.1;  // of the energy
+  if (state.unconverged_steps > 0) {
+    return std::to_string(state.unconverged_steps) +
+           " steps of implicit_euler did not converge: the time step is too long here";
+  }
+  const bool takes_energy_out = method == IntegrationMethod::implicit_euler;
+  if (measures.energy_error > kBlownUp && !takes_energy_out) {
+    return "the energy is off by " + toText(std::round(100 * measures.energy_error)) +
+           " % since the account began: the time step of " + toText(time_step) +
+           " s is too long for this scene (stable here: " + toText(measures.stable_time_step) +
+           " s)";
+  }
+  if (time_step > measures.stable_time_step) {
+    return "the time step of " + toText(time_step) + " s is above the stable one, " +
+           toText(measures.stable_time_step) + " s";
+  }
+  return "";
+}
+
+}  // namespace
+
+Measures measure(const std::shared_ptr<const System>& system, IntegrationMethod method,
+                 double time_step, const State& state, Account& account) {
+  Measures result;
+  result.stable_time_step = stableTimeStep(*system, method, state.positions);
+  result.local_error = localError(system, method, time_step, state);
+  result.energy_error = account.energyError(energies(*system, state));
+  result.angular_momentum_error = account.angularMomentumError(*system, state);
+  result.norm_error = normError(state);
+  result.max_torque = maxTorque(*system, state);
+  result.warning = warningOf(result, method, time_step, state);
+  return result;
 }
 
 }  // namespace spherical_springs::core

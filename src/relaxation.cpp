@@ -21,22 +21,43 @@ std::unique_ptr<Descent> makeDescent(RelaxationMethod method) {
   return std::make_unique<Newton>();
 }
 
-/// Whether no direction has negative curvature beyond rounding.
-bool isMinimum(TangentEnergy& energy) {
-  constexpr double kNegligible = 1e-8;  // of the stiffness scale
+/// Whether no direction has negative curvature beyond what `tolerance` [N m] of torque, and
+/// rounding, leave open.
+bool isMinimum(TangentEnergy& energy, double tolerance) {
+  constexpr double kNegligible = 1e-6;  // of the stiffness scale
   return energy.unknowns() == 0 ||
-         ShiftedCholesky().factorise(energy, Curvature::exact, kNegligible);
+         ShiftedCholesky().factorise(energy, Curvature::exact, kNegligible, tolerance);
 }
 
-/// Displaces every free particle a little, the same way every run, to leave a saddle.
-void leaveSaddle(TangentEnergy& energy, unsigned attempt) {
-  constexpr double kDisplacement = 1e-3;  // [rad]
-  std::mt19937 generator(attempt);
-  Eigen::VectorXd step(energy.unknowns());
-  for (double& component : step) {
-    component = kDisplacement * (generator() / (0.5 * std::mt19937::max()) - 1);
+/// For each particle the longest arc to another particle of its springs, or 1 where all are on one
+/// spot [rad].
+Eigen::VectorXd reach(const System& system, const Points& positions) {
+  Eigen::VectorXd longest = Eigen::VectorXd::Zero(system.particleCount());
+  forEachKind([&](auto kind) {
+    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+      for (const std::uint32_t i : spring.particles) {
+        for (const std::uint32_t j : spring.particles) {
+          longest[i] = std::max(longest[i], arc(positions.col(i), positions.col(j)).angle);
+        }
+      }
+    }
+  });
+  return (longest.array() > 0).select(longest, 1);
+}
+
+/// Displaces every particle by up to a share of its reach, the same way every run.
+void displace(const System& system, double share, unsigned seed, TangentEnergy& energy) {
+  std::mt19937 generator(seed);
+  const Eigen::VectorXd longest = reach(system, energy.positions());
+  Points positions = energy.positions();
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    Eigen::Vector2d step;
+    for (double& component : step) component = generator() / (0.5 * std::mt19937::max()) - 1;
+    if (system.pinned(i)) continue;
+    const Vector3 p = positions.col(i);
+    positions.col(i) = rotated(p, share * longest[i] * (tangentFrame(p) * step));
   }
-  energy.moveTo(energy.moved(step));
+  energy.moveTo(positions);
 }
 
 /// The first spring whose condition is nearly undefined at `positions`, by its place in the order
@@ -72,32 +93,43 @@ class Relaxation {
 
   RelaxationResult run() {
     constexpr unsigned kAttempts = 20;
+    constexpr unsigned kStuckAttempts = 3;
+    unsigned stuck = 0;
     for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
-      if (!descend()) return result_;
-      if (isMinimum(energy_)) {
+      const Outcome outcome = descend();
+      if (outcome == Outcome::ended) return result_;
+      if (outcome == Outcome::within_tolerance && isMinimum(energy_, tolerance_)) {
+        keep();
         result_.converged = true;
         result_.message = "converged";
         return result_;
       }
-      leaveSaddle(energy_, attempt);
+      if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
+      displace(system_, std::min(0.1, 1e-3 * std::pow(10, attempt)), attempt, energy_);
       descent_->restart();
     }
-    result_.message = "ended where the torque is within the tolerance but the energy not least";
+    giveUp();
     return result_;
   }
 
  private:
-  /// Iterates until the torque is within the tolerance; false when something else ended it.
-  bool descend() {
+  enum class Outcome { within_tolerance, stuck, ended };
+
+  Outcome descend() {
     while (energy_.maxTorque() > tolerance_) {
-      if (!goOn()) return false;
+      if (!goOn()) return Outcome::ended;
       const bool moved = descent_->iterate(energy_);
       ++result_.iterations;
       if (isBetter()) keep();
-      if (!moved && energy_.maxTorque() > tolerance_) return giveUp();
+      if (!moved && energy_.maxTorque() > tolerance_) return Outcome::stuck;
     }
-    keep();
-    return true;
+    return Outcome::within_tolerance;
+  }
+
+  /// Whether the torque is what rounding of the positions makes of the springs' stiffness.
+  bool atRoundingFloor() const {
+    constexpr double kRounding = 1e-11;
+    return energy_.maxTorque() < kRounding * energy_.particleStiffness().maxCoeff();
   }
 
   /// Lower in energy than what is kept or, where rounding hides that, in torque.
@@ -129,14 +161,17 @@ class Relaxation {
     return false;
   }
 
-  bool giveUp() {
+  void giveUp() {
+    if (result_.max_torque <= tolerance_) {
+      result_.message = "the torque is within the tolerance, but not at a minimum of the energy";
+      return;
+    }
     const std::string spring = nearlyUndefinedSpring(system_, result_.positions);
     const std::string reason =
         spring.empty() ? "rounding ends it" : spring + " has no area, which ends it";
     result_.message = "no step lowers the energy any more: " + reason + " at a largest torque of " +
                       toText(result_.max_torque) + " N m, above the tolerance of " +
                       toText(tolerance_) + " N m";
-    return false;
   }
 
   const System& system_;

@@ -19,6 +19,33 @@ Vector3 perpendicular(const Vector3& p) {
   return p.cross(Vector3::Unit(smallest)).normalized();
 }
 
+namespace {
+
+/// |p|^2 - 1 to nearly twice the working precision, after the compensated dot product of T. Ogita,
+/// S. M. Rump and S. Oishi, SIAM J. Sci. Comput. 26 (2005).
+double squaredNormExcess(const Vector3& p) {
+  double sum = -1;
+  double error = 0;
+  for (const double component : p) {
+    const double square = component * component;
+    error += std::fma(component, component, -square);
+    const double next = sum + square;
+    const double part = next - sum;
+    error += (sum - (next - part)) + (square - part);
+    sum = next;
+  }
+  return sum + error;
+}
+
+}  // namespace
+
+Vector3 sumOfUnits(const Vector3& a, const Vector3& b) {
+  constexpr double kNearlyAntipodal = 0.01;
+  const Vector3 sum = a + b;
+  if (sum.squaredNorm() > kNearlyAntipodal) return sum;
+  return sum - 0.5 * (squaredNormExcess(a) * a + squaredNormExcess(b) * b);
+}
+
 Arc arc(const Vector3& a, const Vector3& b) {
   const Vector3 cross = crossOfUnits(a, b);
   const double sine = cross.norm();
@@ -69,7 +96,7 @@ double tripleProduct(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c) {
   const LongestEdgeFirst t(a, b, c);
-  const Vector3 sum = t.first + t.second;
+  const Vector3 sum = sumOfUnits(t.first, t.second);
   const double squared_sum = sum.squaredNorm();
   Triangle result;
   result.triple_product = tripleProduct(t);

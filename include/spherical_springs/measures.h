@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/state.h"
@@ -38,6 +39,20 @@ class Account {
   std::mutex mutex_;  // guards what follows
   double largest_total_, largest_momentum_;
 };
+
+/// How well a simulation keeps what it should keep, and what its step costs in accuracy.
+struct Measures {
+  double stable_time_step = 0;  ///< the largest that the method bears here [s]; may be infinite
+  double local_error = 0;       ///< estimated, of one step [rad]
+  double energy_error = 0;      ///< as Account has it
+  double angular_momentum_error = 0;
+  double norm_error = 0;  ///< max | |p| - 1 |
+  double max_torque = 0;  ///< on a particle that is not pinned [N m]
+  std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
+};
+
+Measures measure(const std::shared_ptr<const System>& system, IntegrationMethod method,
+                 double time_step, const State& state, Account& account);
 
 /// Largest torque of the springs on a particle that is not pinned [N m].
 double maxTorque(const System& system, const State& state);

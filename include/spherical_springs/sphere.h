@@ -26,6 +26,10 @@ inline Vector3 crossOfUnits(const Vector3& a, const Vector3& b) {
   return 0.5 * (a - b).cross(a + b);
 }
 
+/// `a + b` of unit vectors, as if they had been normalised without rounding where they are nearly
+/// antipodal and the rounding would be a large share of the sum.
+Vector3 sumOfUnits(const Vector3& a, const Vector3& b);
+
 /// The great-circle arc from `a` to `b`.
 struct Arc {
   double angle;  ///< in [0, pi] [rad]

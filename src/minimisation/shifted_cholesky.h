@@ -6,14 +6,14 @@
 
 namespace spherical_springs::core {
 
-/// Sparse Cholesky factorisation of the Hessian of an energy + shift * stiffness scale. The pattern
-/// is analysed once, so an object serves one system.
+/// Sparse Cholesky factorisation of the Hessian of an energy + shift * stiffness scale + floor. The
+/// pattern is analysed once, so an object serves one system.
 class ShiftedCholesky {
  public:
   /// @return whether the matrix is positive definite.
-  bool factorise(TangentEnergy& energy, Curvature curvature, double shift) {
+  bool factorise(TangentEnergy& energy, Curvature curvature, double shift, double floor = 0) {
     matrix_ = energy.hessian(curvature);
-    matrix_.diagonal() += shift * energy.stiffnessScale();
+    matrix_.diagonal().array() += shift * energy.stiffnessScale().array() + floor;
     if (!analysed_) factor_.analyzePattern(matrix_);
     analysed_ = true;
     factor_.factorize(matrix_);

@@ -105,19 +105,21 @@ Status Publisher::status(const core::Runner::Snapshot& snapshot) {
   message.state = nameOf(snapshot);
   message.integrator = parameters_.integrator;
   message.time_step = parameters_.time_step;
-  const auto method = core::integrationMethod(parameters_.integrator);
-  message.stable_time_step =
-      std::min(Parameters::kLongestTimeStep, core::stableTimeStep(system, method, state.positions));
   message.real_time_factor = realTimeFactor(state);
   message.step_wall_time = snapshot.step_wall_time;
-  message.local_error = core::localError(snapshot.system, method, parameters_.time_step, state);
-  message.energy_error = snapshot.account->energyError(core::energies(system, state));
-  message.angular_momentum_error = snapshot.account->angularMomentumError(system, state);
-  message.norm_error = core::normError(state);
-  message.max_torque = core::maxTorque(system, state);
   message.relax_progress = snapshot.relax_progress;
+
+  const auto measures =
+      core::measure(snapshot.system, core::integrationMethod(parameters_.integrator),
+                    parameters_.time_step, state, *snapshot.account);
+  message.stable_time_step = std::min(Parameters::kLongestTimeStep, measures.stable_time_step);
+  message.local_error = measures.local_error;
+  message.energy_error = measures.energy_error;
+  message.angular_momentum_error = measures.angular_momentum_error;
+  message.norm_error = measures.norm_error;
+  message.max_torque = measures.max_torque;
   const std::lock_guard<std::mutex> lock(mutex_);
-  message.message = message_;
+  message.message = measures.warning.empty() ? message_ : measures.warning;
   return message;
 }
 

@@ -36,9 +36,9 @@ Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3,
   const double beta = 2 * t.denominator / t.squared_norm;
   const double angle = 2 * std::atan2(t.triple_product, t.denominator);
   return {wrappedDifference(angle, spring.rest_solid_angle),
-          {a.cross(beta * crossOfUnits(b, c) - alpha * (b + c)),
-           b.cross(beta * crossOfUnits(c, a) - alpha * (c + a)),
-           c.cross(beta * crossOfUnits(a, b) - alpha * (a + b))}};
+          {a.cross(beta * crossOfUnits(b, c) - alpha * sumOfUnits(b, c)),
+           b.cross(beta * crossOfUnits(c, a) - alpha * sumOfUnits(c, a)),
+           c.cross(beta * crossOfUnits(a, b) - alpha * sumOfUnits(a, b))}};
 }
 
 // With z = denominator + i triple_product, the angle is 2 arg z; u and v are the real and imaginary
@@ -64,7 +64,7 @@ TangentCondition<3> tangentCondition(const SolidAngleSpring& spring,
     const Vector3& next = points[(i + 1) % 3];
     const Vector3& last = points[(i + 2) % 3];
     const Vector3 cross = crossOfUnits(next, last);
-    const Vector3 sum = next + last;
+    const Vector3 sum = sumOfUnits(next, last);
     u[i] = frames[i].transpose() * (beta * sum + alpha * cross);
     v[i] = frames[i].transpose() * (beta * cross - alpha * sum);
     result.gradient[i] = 2 * v[i];

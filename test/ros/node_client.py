@@ -145,6 +145,7 @@ class NodeProcess:
 
     def __exit__(self, *_):
         self.stop()
+        self._process.kill()
         self._output.close()
 
     def client(self):
@@ -155,8 +156,12 @@ class NodeProcess:
         self._process.send_signal(signal.SIGINT)
         return self.exit_code()
 
-    def exit_code(self):
-        return self._process.wait(LONG)
+    def exit_code(self, timeout=LONG):
+        """Wait for its end; None if it goes on all the same."""
+        try:
+            return self._process.wait(timeout)
+        except subprocess.TimeoutExpired:
+            return None
 
     def output(self):
         self._output.seek(0)

@@ -28,23 +28,24 @@ class TestTime(unittest.TestCase):
             with node.listen('status', Status) as statuses:
                 self.assertEqual(0.125, statuses.first().time_step)
 
-    def error_after_a_second(self, integrator, time_step):
+    def error_after_a_second(self, integrator, steps):
         """Of a pair that swings on one arc, against the closed form."""
-        with paused(integrator=integrator, time_step=time_step) as process:
+        with paused(integrator=integrator, time_step=1 / steps) as process:
             node = process.client()
             ids = node.add_particles([particle((1, 0, 0)), particle((0, 1, 0))]).ids
             node.add_springs(angle_springs=[angle_spring(ids, rest_angle=1)])
-            node.step(round(1 / time_step))
+            node.step(steps)
             with node.listen('status', Status) as statuses:
                 self.assertEqual(integrator, statuses.first().integrator)
             expected = 1 + (math.pi / 2 - 1) * math.cos(math.sqrt(2))
             return abs(angle(*positions(node.get_scene())) - expected)
 
     def test_integrator(self):
-        for integrator, order in (('euler', 1), ('verlet', 2)):
-            coarse = self.error_after_a_second(integrator, 1 / 128)
-            fine = self.error_after_a_second(integrator, 1 / 256)
-            self.assertAlmostEqual(order, math.log2(coarse / fine), delta=0.05)
+        for integrator, order, steps in (('euler', 1, 16), ('verlet', 2, 16),
+                                         ('fourth_order', 4, 16), ('implicit_euler', 1, 512)):
+            coarse = self.error_after_a_second(integrator, steps)
+            fine = self.error_after_a_second(integrator, 2 * steps)
+            self.assertAlmostEqual(order, math.log2(coarse / fine), delta=0.05, msg=integrator)
 
     def test_running(self):
         with NodeProcess(running='true') as running, NodeProcess() as default, \

@@ -1,0 +1,36 @@
+// A scene stepped some way.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scenes.h"
+#include "spherical_springs/integrator.h"
+#include "spherical_springs/measures.h"
+
+namespace spherical_springs::core::testing {
+
+inline State stateOf(const Scene& scene) {
+  State state;
+  state.positions = positionsOf(scene);
+  state.angular_velocities = Points(3, scene.particles().size());
+  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
+    state.angular_velocities.col(i) = scene.particles().item(i).angular_velocity;
+  }
+  return state;
+}
+
+struct Trajectory {
+  std::shared_ptr<const System> system;
+  State state;
+
+  Trajectory(const Scene& scene, const std::string& method, double time_step, int steps,
+             System::Options options = {})
+      : system(std::make_shared<const System>(scene, options)), state(stateOf(scene)) {
+    const auto integrator = makeIntegrator(system, integrationMethod(method), time_step);
+    for (int i = 0; i < steps; ++i) integrator->step(state);
+  }
+  double conserved() const { return energies(*system, state).total() + state.dissipated; }
+};
+
+}  // namespace spherical_springs::core::testing
