@@ -7,15 +7,27 @@
 
 namespace spherical_springs::core {
 
-/// Below this a loop is over before a second thread has begun.
-constexpr std::ptrdiff_t kWorthThreads = 4096;
+/// The number of threads worth their start for a loop over `count` springs or particles.
+inline int worthwhileThreads(std::ptrdiff_t count, int threads) {
+  constexpr std::ptrdiff_t kTooShort = 4096;  // over before a second thread has begun
+  return count < kTooShort ? 1 : threads;
+}
+
+/// Calls `body(i)` for i from 0 to `count` - 1 on exactly `threads` threads.
+template <class Body>
+void forOnThreads(std::ptrdiff_t count, int threads, const Body& body) {
+  if (threads == 1) {  // without the thread library's own test for it
+    for (std::ptrdiff_t i = 0; i < count; ++i) body(i);
+    return;
+  }
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) body(i);
+}
 
 /// Calls `body(i)` for i from 0 to `count` - 1; bodies must not write to the same place.
 template <class Body>
 void parallelFor(std::ptrdiff_t count, int threads, const Body& body) {
-#pragma omp parallel for num_threads(threads) \
-    schedule(static) if (threads > 1 && count >= kWorthThreads)
-  for (std::ptrdiff_t i = 0; i < count; ++i) body(i);
+  forOnThreads(count, worthwhileThreads(count, threads), body);
 }
 
 /// Sum of `term(i)` for i from 0 to `count` - 1, by blocks of a fixed size.
@@ -24,14 +36,10 @@ double parallelSum(std::ptrdiff_t count, int threads, const Term& term) {
   constexpr std::ptrdiff_t kBlock = 1024;
   const std::ptrdiff_t blocks = (count + kBlock - 1) / kBlock;
   std::vector<double> sums(blocks, 0);
-#pragma omp parallel for num_threads(threads) \
-    schedule(static) if (threads > 1 && count >= kWorthThreads)
-  for (std::ptrdiff_t block = 0; block < blocks; ++block) {
+  forOnThreads(blocks, worthwhileThreads(count, threads), [&](std::ptrdiff_t block) {
     const std::ptrdiff_t end = std::min(count, (block + 1) * kBlock);
-    double sum = 0;
-    for (std::ptrdiff_t i = block * kBlock; i < end; ++i) sum += term(i);
-    sums[block] = sum;
-  }
+    for (std::ptrdiff_t i = block * kBlock; i < end; ++i) sums[block] += term(i);
+  });
   double total = 0;
   for (const double sum : sums) total += sum;
   return total;

@@ -73,7 +73,9 @@ def random_particles(generator, count):
 def random_springs(generator, ids, count):
     """As many springs of each kind, with every field at random, as arguments of add_springs."""
     def ends(number):
-        return [int(i) for i in generator.choice(ids, number, replace=False)]
+        first = generator.integers(len(ids))
+        gaps = generator.integers(1, len(ids) // number + 1, size=number - 1)
+        return [ids[(first + gap) % len(ids)] for gap in (0, *np.cumsum(gaps))]
 
     def common():
         return {'stiffness': generator.uniform(0.5, 2), 'damping': generator.choice([0, 0.1]),

@@ -21,8 +21,9 @@ class TestTopic(StatusTest):
 
     def test_comes_again_and_again(self):
         with self.node.listen('status', Status) as statuses:
-            stamps = [status.header.stamp for status in statuses.several(4)]
-        self.assertEqual(sorted(set(stamps)), stamps)
+            stamp = statuses.first().header.stamp
+            for _ in range(3):
+                stamp = statuses.first(lambda status: status.header.stamp > stamp).header.stamp
 
     def test_state(self):
         add_knot(self.node)
@@ -85,7 +86,9 @@ class TestFields(StatusTest):
         status = self.status(lambda status: status.angle_springs == 1)
         self.assertAlmostEqual(stiffness * deviation, status.max_torque, delta=1e-14)
         frequency = math.sqrt(2 * stiffness / mass)
-        self.assertAlmostEqual(2 / frequency, status.stable_time_step, delta=1e-6)
+        longest = 2 / frequency
+        self.assertLess(0.9 * longest, status.stable_time_step)
+        self.assertLess(status.stable_time_step, longest + 1e-9)
         # A step and two half ones differ by the third order of the step.
         acceleration = stiffness * deviation / mass
         self.assertLess(status.local_error, acceleration * frequency * 1e-3 ** 3)
