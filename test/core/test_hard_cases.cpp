@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes.h"
 #include "scenes.h"
 #include "spherical_springs/relaxation.h"
 #include "trajectory.h"
@@ -237,6 +238,35 @@ TEST(StableTimeStep, Holds) {
       EXPECT_GT(beyond.conserved(), 20 * start.conserved()) << "the bound is loose by half";
     }
   }
+}
+
+/// An icosphere with springs of arcs and triangles, a little out of shape.
+Scene mesh() {
+  const auto sphere = benchmark_scenes::icosphere(1);
+  testing::Random random(1);
+  std::vector<Particle> particles;
+  for (const Vector3& vertex : sphere.vertices) {
+    particles.push_back(testing::particleAt(vertex + 1e-3 * random.unitVector()));
+  }
+  SpringLists springs;
+  for (const auto& [a, b] : sphere.edges) {
+    springs.get<AngleSpring>().push_back(angleSpring(a, b, 0));
+    springs.get<AngleSpring>().back().at_rest = true;
+  }
+  for (const auto& [a, b, c] : sphere.faces) {
+    springs.get<SolidAngleSpring>().push_back(testing::solidAngleSpring(a, b, c, 4 * kPi / 80));
+    springs.get<SolidAngleSpring>().back().stiffness = 10;
+  }
+  return testing::sceneOf(particles, springs);
+}
+
+TEST(StableTimeStep, OfAMeshHoldsAndIsWithinAFactorOf2) {
+  const Trajectory start(mesh(), "verlet", 1, 0);
+  const double stable =
+      stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+  const double energy = start.conserved();
+  EXPECT_LT(Trajectory(mesh(), "verlet", 0.95 * stable, 5000).conserved(), 2 * energy);
+  EXPECT_GT(Trajectory(mesh(), "verlet", 2 * stable, 500).conserved(), 100 * energy);
 }
 
 TEST(Measures, WarnBeforeAnyoneHasToWonder) {

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Draws the work-precision diagram and prints the table that says which integrator to take."""
+import csv
+import sys
+from collections import defaultdict
+
+import matplotlib
+
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt  # noqa: E402
+
+# Okabe and Ito's colours, told apart by the colour-blind.
+COLOURS = {'euler': '#E69F00', 'verlet': '#0072B2', 'fourth_order': '#009E73',
+           'implicit_euler': '#CC79A7', 'report': '#000000',
+           'newton': '#0072B2', 'dynamics': '#E69F00'}
+MARKERS = {'euler': 'o', 'verlet': 's', 'fourth_order': '^', 'implicit_euler': 'v',
+           'report': 'x', 'newton': 's', 'dynamics': '.'}
+INTEGRATORS = ('euler', 'verlet', 'fourth_order', 'implicit_euler')
+WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
+
+
+def read_steps(path):
+    """Rows of each scene and method, and the error of each scene's reference."""
+    rows = defaultdict(lambda: defaultdict(list))
+    references = {}
+    with open(path, newline='') as file:
+        for row in csv.DictReader(file):
+            if row['method'] == 'reference':
+                references[row['scene']] = float(row['trajectory_error'])
+                continue
+            rows[row['scene']][row['method']].append(
+                {name: float(row[name]) for name in
+                 ('time_step', 'wall_per_second', 'trajectory_error', 'energy_error')})
+    return rows, references
+
+
+def read_relaxation(path):
+    torques = defaultdict(list)
+    with open(path, newline='') as file:
+        for row in csv.DictReader(file):
+            torques[row['method']].append((float(row['wall_time']), float(row['max_torque'])))
+    return torques
+
+
+def draw_errors(axes, rows, field, floor):
+    for method, points in rows.items():
+        if field == 'energy_error' and method == 'report':
+            continue  # it keeps no account
+        shown = [(p['wall_per_second'], p[field]) for p in points if p[field] > 0]
+        if shown:
+            axes.loglog(*zip(*shown), marker=MARKERS[method], color=COLOURS[method],
+                        markersize=4, linewidth=1, label=method)
+    axes.axhline(floor, color='0.7', linewidth=0.8)
+    axes.set_ylim(1e-15, 10)
+    axes.grid(True, which='major', linewidth=0.3)
+
+
+def draw(rows, references, torques, path):
+    count = len(rows)
+    figure, grid = plt.subplots(2, count + 1, figsize=(3.2 * (count + 1), 6.4),
+                                constrained_layout=True)
+    for column, (scene, methods) in enumerate(rows.items()):
+        draw_errors(grid[0][column], methods, 'trajectory_error', references[scene])
+        draw_errors(grid[1][column], methods, 'energy_error', 1e-16)
+        grid[0][column].set_title(scene)
+        grid[1][column].set_xlabel('wall time / simulated time')
+    grid[0][0].set_ylabel('error of the positions [rad]')
+    grid[1][0].set_ylabel('relative error of the energy')
+    relaxing = grid[0][count]
+    for method, points in torques.items():
+        relaxing.loglog(*zip(*points), marker=MARKERS[method], color=COLOURS[method],
+                        markersize=3, linewidth=1, label=method)
+    relaxing.set_title('relaxing the mesh')
+    relaxing.set_xlabel('wall time [s]')
+    relaxing.set_ylabel('largest torque [N m]')
+    relaxing.legend(fontsize=8)
+    relaxing.grid(True, which='major', linewidth=0.3)
+    grid[1][count].axis('off')
+    handles = {}
+    for axes in grid[0][:count]:
+        handles.update(zip(*reversed(axes.get_legend_handles_labels())))
+    grid[1][count].legend(handles.values(), handles.keys(), loc='center', frameon=False)
+    figure.savefig(path, dpi=110)
+
+
+def cheapest(methods, error):
+    """The method, step and wall time that reach an error for the least time."""
+    candidates = [(p['wall_per_second'], method, p['time_step'])
+                  for method in INTEGRATORS for p in methods.get(method, ())
+                  if p['trajectory_error'] <= error]
+    return min(candidates) if candidates else None
+
+
+def print_table(rows):
+    print('| scene | ' + ' | '.join(f'error {e:g}' for e in WANTED_ERRORS) + ' |')
+    print('| --- |' + ' --- |' * len(WANTED_ERRORS))
+    for scene, methods in rows.items():
+        cells = []
+        for error in WANTED_ERRORS:
+            best = cheapest(methods, error)
+            cells.append(f'`{best[1]}`, {best[2]:.2g} s' if best else 'not reached')
+        print(f'| {scene} | ' + ' | '.join(cells) + ' |')
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit('usage: plot_work_precision.py STEPS.csv RELAXATION.csv PICTURE.png')
+    rows, references = read_steps(sys.argv[1])
+    draw(rows, references, read_relaxation(sys.argv[2]), sys.argv[3])
+    print_table(rows)
+
+
+if __name__ == '__main__':
+    main()
