@@ -47,9 +47,13 @@ void checkEach(std::vector<Item>& items, const char* list, Check&& check) {
 /// stays as it is, to the last bit.
 Vector3 tangentPart(const Vector3& position, const Vector3& angular_velocity) {
   constexpr double kNormalTolerance = 4 * std::numeric_limits<double>::epsilon();
-  const double along = position.dot(angular_velocity);
-  if (std::abs(along) <= kNormalTolerance * angular_velocity.norm()) return angular_velocity;
-  return angular_velocity - along * position;
+  Vector3 tangent = angular_velocity;
+  for (int i = 0; i < 3; ++i) {  // more than once where little is left beside what is dropped
+    const double along = position.dot(tangent);
+    if (std::abs(along) <= kNormalTolerance * tangent.norm()) break;
+    tangent -= along * position;
+  }
+  return tangent;
 }
 
 void checkParticle(Particle& particle) {

@@ -7,7 +7,7 @@
 namespace spherical_springs::core {
 
 Vector3 direction(const Vector3& vector) {
-  constexpr double kUnitTolerance = 4 * std::numeric_limits<double>::epsilon();
+  constexpr double kUnitTolerance = 8 * std::numeric_limits<double>::epsilon();
   if (std::abs(vector.squaredNorm() - 1) <= kUnitTolerance) return vector;
   const Vector3 scaled = vector / vector.cwiseAbs().maxCoeff();
   return scaled.normalized();

@@ -43,6 +43,7 @@ void run() {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_springs");
+  const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it
   try {
     spherical_springs::run();
   } catch (const std::exception& fault) {

@@ -16,13 +16,27 @@ namespace {
   throw std::invalid_argument(text.str());
 }
 
+using Type = XmlRpc::XmlRpcValue::Type;
+
+// A whole number will do for a real one, but nothing else is taken for something else.
+bool isOf(const XmlRpc::XmlRpcValue& raw, double) {
+  return raw.getType() == Type::TypeDouble || raw.getType() == Type::TypeInt;
+}
+bool isOf(const XmlRpc::XmlRpcValue& raw, int) { return raw.getType() == Type::TypeInt; }
+bool isOf(const XmlRpc::XmlRpcValue& raw, bool) { return raw.getType() == Type::TypeBoolean; }
+bool isOf(const XmlRpc::XmlRpcValue& raw, const std::string&) {
+  return raw.getType() == Type::TypeString;
+}
+
 /// Reads one parameter, if it is set; `allowed` says which values `accept` takes.
 template <class Value, class Accept>
 void read(const ros::NodeHandle& node, const std::string& name, Value& value,
           const std::string& allowed, const Accept& accept) {
   XmlRpc::XmlRpcValue raw;
   if (!node.getParam(name, raw)) return;
-  if (!node.getParam(name, value) || !accept(value)) refuse(name, raw, allowed);
+  if (!isOf(raw, value) || !node.getParam(name, value) || !accept(value)) {
+    refuse(name, raw, allowed);
+  }
 }
 
 void read(const ros::NodeHandle& node, const std::string& name, double& value,

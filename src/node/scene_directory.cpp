@@ -21,7 +21,10 @@ fs::path SceneDirectory::inside(const std::string& path) const {
   const auto refuse = [&](const std::string& allowed) {
     throw std::invalid_argument("path is '" + path + "'; allowed: " + allowed);
   };
-  if (path.empty() || path.find('\0') != std::string::npos) refuse("the name of a file");
+  if (path.find('\0') != std::string::npos) {
+    throw std::invalid_argument("path has a zero byte; allowed: the name of a file");
+  }
+  if (path.empty()) refuse("the name of a file");
   const fs::path whole = fs::weakly_canonical(directory_ / path);
   const fs::path from_here = whole.lexically_relative(directory_);
   if (from_here.empty() || *from_here.begin() == "..") {

@@ -1,6 +1,7 @@
 """Long calls: what may be done meanwhile, and how they end early."""
 
 import time
+from concurrent import futures
 
 import numpy as np
 from spherical_springs.msg import Status
@@ -112,7 +113,7 @@ class TestLongCalls(NodeTest):
                 add_knot(node)
                 call = begin(node, **long_call)
                 self.assertEqual(0, process.stop(), process.output())
-                self.assertIsNotNone(call.exception(LONG) or call.result())
+                self.assertTrue(futures.wait([call], LONG).done)
 
 
 class TestNothingUnderWay(NodeTest):

@@ -180,8 +180,8 @@ class TestBadFiles(FileTest):
     def test_wrong_type(self):
         for field, value in (('time', 'noon'), ('particles', {}), ('angle_springs', 5)):
             self.assert_altered_refused(lambda s: s.update({field: value}), field)
-        for field, value in (('position', 'north'), ('position', [1, 2]), ('position', [1, 2, '3']),
-                             ('mass', 'heavy'), ('mass', None), ('pinned', 1), ('id', 1.5),
+        for field, value in (('position', 'north'), ('position', [1, 2]),
+                             ('position', [1, 2, '3']), ('mass', 'heavy'), ('mass', None), ('pinned', 1), ('id', 1.5),
                              ('id', -1), ('id', 4294967296)):
             self.assert_altered_refused(lambda s: s['particles'][2].update({field: value}),
                                         'particles[2].' + field, 'allowed')

@@ -16,8 +16,8 @@ class TestClosedForms(NodeTest):
     def test_a_pair_on_one_arc_swings_harmonically(self):
         stiffness, mass, rest, amplitude, steps = 3, 2.5, 1.1, 0.4, 2000
         start = rest + amplitude
-        ids = self.node.add_particles([
-            particle(p, mass=mass) for p in ((1, 0, 0), (math.cos(start), math.sin(start), 0))]).ids
+        places = (1, 0, 0), (math.cos(start), math.sin(start), 0)
+        ids = self.node.add_particles([particle(p, mass=mass) for p in places]).ids
         self.node.add_springs(angle_springs=[angle_spring(ids, stiffness, rest_angle=rest)])
         frequency = math.sqrt(2 * stiffness / mass)
         # Strang's splitting swings at a slightly different frequency, and exactly so.
@@ -38,7 +38,7 @@ class TestClosedForms(NodeTest):
                                delta=1e-11)
 
     def test_a_damped_spring_slows_only_what_changes_its_length(self):
-        """Both turn with the arc, one along it too: of that, half is shared and stays."""
+        # Both turn about one axis; what they have in common leaves the arc as it is.
         damping, mass = 0.7, 2
         ids = self.node.add_particles([
             particle((1, 0, 0), (0, 0, 1), mass=mass),
