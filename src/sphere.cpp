@@ -111,10 +111,41 @@ double solidAngle(const Vector3& a, const Vector3& b, const Vector3& c) {
   return t.squared_norm > 0 ? 2 * std::atan2(t.triple_product, t.denominator) : 0;
 }
 
+namespace {
+
+struct Turn {
+  double cosine;
+  double sinc;  ///< sin(angle) / angle
+};
+
+/// Below half a radian by Taylor's series, whose first term left out is 1e-18: a third of the time.
+Turn turnBy(double squared_angle) {
+  constexpr double kSmall = 0.25;
+  const double x = squared_angle;
+  if (x > kSmall) {
+    const double angle = std::sqrt(x);
+    return {std::cos(angle), std::sin(angle) / angle};
+  }
+  constexpr double kCosine[] = {-1. / 87178291200, 1. / 479001600, -1. / 3628800, 1. / 40320,
+                                -1. / 720,         1. / 24,        -1. / 2,       1};
+  constexpr double kSinc[] = {-1. / 1307674368000, 1. / 6227020800, -1. / 39916800, 1. / 362880,
+                              -1. / 5040,          1. / 120,        -1. / 6,        1};
+  double cosine = 0;
+  double sinc = 0;
+  for (int n = 0; n < 8; ++n) {
+    cosine = kCosine[n] + x * cosine;
+    sinc = kSinc[n] + x * sinc;
+  }
+  return {cosine, sinc};
+}
+
+}  // namespace
+
 Vector3 rotated(const Vector3& p, const Vector3& rotation) {
-  const double angle = rotation.norm();
-  if (angle == 0) return p;
-  const Vector3 moved = std::cos(angle) * p + (std::sin(angle) / angle) * rotation.cross(p);
+  const double squared_angle = rotation.squaredNorm();
+  if (squared_angle == 0) return p;
+  const Turn turn = turnBy(squared_angle);
+  const Vector3 moved = turn.cosine * p + turn.sinc * rotation.cross(p);
   return moved * (1.5 - 0.5 * moved.squaredNorm());
 }
 

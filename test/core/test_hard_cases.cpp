@@ -288,18 +288,37 @@ TEST(LongRun, KeepsEnergyAndAngularMomentum) {
       testing::sceneOf({testing::particleAt({1, 0.15, 0.05}), testing::particleAt({0.1, 1, 0.1}),
                         testing::particleAt({0.1, 0.2, 1})},
                        threeArcs());
-  for (const char* method : {"verlet", "fourth_order"}) {
+  for (const char* method : {"euler", "verlet", "fourth_order"}) {
     const Trajectory start(scene, method, 1e-2, 0);
     Account account(*start.system, start.state);
     const Trajectory early(scene, method, 1e-2, 10000);
     const Trajectory end(scene, method, 1e-2, 1000000);
     const Vector3 momentum = end.system->angularMomentum(end.state.angular_velocities);
     EXPECT_LT(momentum.norm(), 1e-12) << method;
-    const double bound = method == std::string("verlet") ? 1e-4 : 1e-8;
+    const double bound = std::pow(10, -2 * orderOf(integrationMethod(method)));
     EXPECT_LT(account.energyError(energies(*early.system, early.state)), bound);
     EXPECT_LT(account.energyError(energies(*end.system, end.state)), bound);
     expectSound(end.state);
   }
+}
+
+TEST(LongRun, OfAThousandParticlesStaysSound) {
+  const std::uint32_t count = 1000;
+  testing::Random random(1);
+  std::vector<Particle> particles;
+  SpringLists springs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double turn = 2 * kPi * i / count;
+    particles.push_back(testing::particleAt(Vector3(std::cos(turn), std::sin(turn), 0) +
+                                            2e-3 * random.unitVector()));
+    springs.get<AngleSpring>().push_back(angleSpring(i, (i + 1) % count, 2 * kPi / count));
+  }
+  const Scene scene = testing::sceneOf(particles, springs);
+  const Trajectory start(scene, "verlet", 0.1, 0);
+  const Trajectory end(scene, "verlet", 0.1, 1000000);
+  EXPECT_NEAR(end.conserved(), start.conserved(), 0.02 * start.conserved());
+  EXPECT_LT(end.system->angularMomentum(end.state.angular_velocities).norm(), 1e-12);
+  expectSound(end.state);
 }
 
 }  // namespace

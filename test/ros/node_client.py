@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -180,3 +181,11 @@ class NodeTest(unittest.TestCase):
     def setUp(self):
         self.node.set_running(False)
         self.node.clear()
+
+    def make_scene_directory(self):
+        """The node's directory of files: empty now, and gone after the test."""
+        directory = rospy.get_param(self.node.name + '/scene_directory')
+        shutil.rmtree(directory, ignore_errors=True)
+        os.makedirs(directory)
+        self.addCleanup(shutil.rmtree, directory)
+        return directory

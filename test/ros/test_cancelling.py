@@ -26,6 +26,7 @@ def begin(node, service, **fields):
 class TestLongCalls(NodeTest):
     def setUp(self):
         super().setUp()
+        self.make_scene_directory()
         add_knot(self.node)
         self.node.save_scene('knot.json')
         self.before = self.node.get_scene()

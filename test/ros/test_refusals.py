@@ -49,7 +49,7 @@ ENDS = dict(zip(KINDS, (2, 3, 3)))
 
 
 def text(value):
-    return repr(value).replace('.0', '') if isinstance(value, float) else str(value)
+    return '%.16g' % value
 
 
 class RefusalTest(NodeTest):
