@@ -234,7 +234,7 @@ void measureRelaxation(std::ostream& csv) {
     options.tolerance = 1e-12;
     const double begin = now();
     options.go_on = [&](const RelaxationProgress& progress) {
-      csv << name << "," << now() - begin << "," << progress.max_torque << "\n";
+      csv << name << "," << now() - begin << "," << progress.best.max_torque << "\n";
       return true;
     };
     const auto result = relax(system, stateOf(scene).positions, options);

@@ -156,7 +156,7 @@ class Relaxation {
     const double way = std::log(first_torque_ / tolerance_);
     const double gone = std::log(first_torque_ / std::max(result_.max_torque, tolerance_));
     const double fraction = way > 0 ? std::clamp(gone / way, 0., 1.) : 1;
-    if (options_.go_on({result_.positions, result_.max_torque, fraction})) return true;
+    if (options_.go_on({result_, fraction})) return true;
     result_.message = "cancelled; largest torque " + toText(result_.max_torque) + " N m";
     return false;
   }

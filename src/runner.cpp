@@ -1,7 +1,11 @@
 #include "spherical_springs/runner.h"
 
 #include <chrono>
+#include <condition_variable>
+#include <exception>
 #include <utility>
+
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -80,36 +84,82 @@ std::uint64_t Runner::step(std::uint64_t steps) {
     const Lock lock(mutex_);
     done += stepForASlice(steps - done);
   }
-  if (cancelled_) {
+  if (done < steps) {
     const Lock lock(mutex_);
     simulation_.settle(Points(simulation_.state().positions));
   }
   return done;
 }
 
-RelaxationResult Runner::relax(RelaxationOptions options) {
+/// A relaxation on a thread of its own, which may be left to end by itself.
+struct Runner::Work {
+  std::mutex mutex;  // guards what follows
+  std::condition_variable changed;
+  RelaxationResult best;
+  double fraction = 0;
+  bool finished = false;
+  bool abandoned = false;
+  std::exception_ptr fault;
+
+  void run(const System& system, const Points& positions, RelaxationOptions options) {
+    options.go_on = [this](const RelaxationProgress& progress) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      best = progress.best;
+      fraction = progress.fraction;
+      return !abandoned;
+    };
+    try {
+      RelaxationResult result = core::relax(system, positions, options);
+      const std::lock_guard<std::mutex> lock(mutex);
+      best = std::move(result);
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    finished = true;
+    changed.notify_all();
+  }
+};
+
+Runner::~Runner() {
+  if (worker_.joinable()) worker_.join();
+}
+
+RelaxationResult Runner::relax(const RelaxationOptions& options) {
   const Busy busy(*this, Activity::relaxing);
   Snapshot start = snapshot();
-  auto shown = Clock::now();
-  options.go_on = [&](const RelaxationProgress& progress) {
-    if (Clock::now() - shown >= kShowEvery) {
-      const Lock lock(mutex_);
-      simulation_.settle(progress.positions);
-      relax_progress_ = progress.fraction;
-      shown = Clock::now();
-    }
-    return !cancelled_;
-  };
-  try {
-    RelaxationResult result = core::relax(*start.system, start.state.positions, options);
-    const Lock lock(mutex_);
-    simulation_.settle(result.positions);
-    return result;
-  } catch (...) {
-    const Lock lock(mutex_);
-    simulation_.restore(std::move(start.state), start.account);
-    throw;
+  if (worker_.joinable()) worker_.join();  // one that was cancelled may not have ended yet
+  const auto work = std::make_shared<Work>();
+  worker_ = std::thread([work, system = start.system, positions = start.state.positions, options] {
+    work->run(*system, positions, options);
+  });
+
+  std::unique_lock<std::mutex> lock(work->mutex);
+  while (!work->finished && !cancelled_) {
+    work->changed.wait_for(lock, kShowEvery);
+    show(work->best, work->fraction);
   }
+  if (work->fault) {
+    const Lock simulation_lock(mutex_);
+    simulation_.restore(std::move(start.state), start.account);
+    std::rethrow_exception(work->fault);
+  }
+  RelaxationResult result = work->best;
+  if (!work->finished) {
+    work->abandoned = true;
+    result.message = "cancelled; largest torque " + toText(result.max_torque) + " N m";
+  }
+  if (result.positions.cols() == 0) result.positions = start.state.positions;
+  const Lock simulation_lock(mutex_);
+  simulation_.settle(result.positions);
+  return result;
+}
+
+void Runner::show(const RelaxationResult& best, double fraction) {
+  if (best.positions.cols() == 0) return;
+  const Lock lock(mutex_);
+  simulation_.settle(best.positions);
+  relax_progress_ = fraction;
 }
 
 bool Runner::cancel() {

@@ -60,8 +60,8 @@ void checkParticle(Particle& particle) {
   if (!particle.position.allFinite() || particle.position.isZero(0)) {
     refuse("position", toText(particle.position), "any finite non-zero vector");
   }
-  if (!(particle.angular_velocity.array().abs() <= kLargest).all()) {
-    refuse("angular_velocity", toText(particle.angular_velocity), "finite, up to 1e30 [rad/s]");
+  if (!(particle.angular_velocity.array().abs() <= kFastest).all()) {
+    refuse("angular_velocity", toText(particle.angular_velocity), "finite, up to 1e100 [rad/s]");
   }
   if (particle.mass == 0) particle.mass = 1;
   checkFields(particle);

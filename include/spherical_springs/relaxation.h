@@ -19,10 +19,18 @@ enum class RelaxationMethod {
 /// @throw std::invalid_argument for any other name.
 RelaxationMethod relaxationMethod(const std::string& name);
 
+struct RelaxationResult {
+  Points positions;
+  bool converged = false;  ///< the torque is within the tolerance, at a minimum of the energy
+  std::uint32_t iterations = 0;
+  double energy_before = 0, energy_after = 0;  ///< potential [J]
+  double max_torque = 0;                       ///< on a free particle [N m]
+  std::string message;                         ///< why it ended
+};
+
 struct RelaxationProgress {
-  const Points& positions;  ///< the best so far
-  double max_torque;        ///< there, on a free particle [N m]
-  double fraction;          ///< of the way, from 0 to 1, by the logarithm of the torque
+  const RelaxationResult& best;  ///< what it would be if it ended now
+  double fraction;               ///< of the way, from 0 to 1, by the logarithm of the torque
 };
 
 struct RelaxationOptions {
@@ -31,15 +39,6 @@ struct RelaxationOptions {
   double max_time = 0;   ///< wall [s]; 0: no limit
   /// Called after every iteration; returning false ends the relaxation.
   std::function<bool(const RelaxationProgress&)> go_on = [](const auto&) { return true; };
-};
-
-struct RelaxationResult {
-  Points positions;
-  bool converged = false;  ///< the torque is within the tolerance, at a minimum of the energy
-  std::uint32_t iterations = 0;
-  double energy_before = 0, energy_after = 0;  ///< potential [J]
-  double max_torque = 0;                       ///< on a free particle [N m]
-  std::string message;                         ///< why it ended
 };
 
 /// 1e-9 of the largest stiffness [N m].

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "spherical_springs/relaxation.h"
 #include "spherical_springs/simulation.h"
@@ -30,12 +31,13 @@ class FairMutex {
 enum class Activity { none, stepping, relaxing };
 
 /// Steps and relaxes a simulation, and lets others read it meanwhile: stepping pauses for them
-/// every few milliseconds, a relaxation works on a copy and shows how far it has come. Changes are
-/// refused until either ends. All functions may be called from any thread.
+/// every few milliseconds; a relaxation works on a copy, on a thread of its own, and shows how far
+/// it has come. Changes are refused until either ends. All functions may be called from any thread.
 class Runner {
  public:
   Runner(const Simulation::Settings& settings, bool running)
       : simulation_(settings), running_(running) {}
+  ~Runner();
 
   /// `use(simulation)` for one that only looks; returns what it returns.
   template <class Use>
@@ -66,7 +68,7 @@ class Runner {
 
   /// @throw std::runtime_error while another is under way, std::invalid_argument for bad options,
   /// with nothing changed.
-  RelaxationResult relax(RelaxationOptions options);
+  RelaxationResult relax(const RelaxationOptions& options);
 
   /// Ends a step or relaxation under way at its best state so far, at rest.
   /// @return whether there was one.
@@ -86,8 +88,10 @@ class Runner {
 
  private:
   class Busy;
+  struct Work;
 
   void requireIdle() const;
+  void show(const RelaxationResult& best, double fraction);
   std::uint64_t stepForASlice(std::uint64_t most);
 
   FairMutex mutex_;  // guards what follows, but for the atomic
@@ -97,6 +101,7 @@ class Runner {
   double relax_progress_ = 0;
   double step_wall_time_ = 0;
   std::atomic<bool> cancelled_{false};
+  std::thread worker_;  // used by the one caller whose relaxation is under way
 };
 
 }  // namespace spherical_springs::core

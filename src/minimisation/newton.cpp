@@ -40,8 +40,26 @@ bool Newton::tryStep(TangentEnergy& energy, double& expected_drop) {
   return false;
 }
 
+void Newton::restart() {
+  shift_ = kLeastShift;
+  iterations_ = 0;
+}
+
+/// Whether hundreds of iterations have brought next to nothing, as on the way into a place where
+/// the energy has no derivative.
+bool Newton::creeps(double value) {
+  constexpr int kWindow = 300;
+  constexpr double kNextToNothing = 1e-6;
+  if (iterations_++ % kWindow != 0) return false;
+  const bool first = iterations_ == 1;
+  const bool creeping = !first && value > (1 - kNextToNothing) * earlier_value_;
+  earlier_value_ = value;
+  return creeping;
+}
+
 bool Newton::iterate(TangentEnergy& energy) {
   constexpr double kGreatestShift = 1e12;
+  if (creeps(energy.value())) return false;
   for (; shift_ < kGreatestShift; shift_ = std::max(10 * shift_, 1e-6)) {
     if (!cholesky_.factorise(energy, Curvature::exact, shift_) &&
         !cholesky_.factorise(energy, Curvature::definite, shift_)) {
@@ -51,7 +69,7 @@ bool Newton::iterate(TangentEnergy& energy) {
     if (tryStep(energy, expected_drop)) return true;
     if (expected_drop <= kRounding * energy.value()) break;
   }
-  restart();
+  shift_ = kLeastShift;
   return false;
 }
 

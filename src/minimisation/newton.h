@@ -10,14 +10,18 @@ namespace spherical_springs::core {
 class Newton : public Descent {
  public:
   bool iterate(TangentEnergy& energy) override;
-  void restart() override { shift_ = kLeastShift; }
+  void restart() override;
 
  private:
   static constexpr double kLeastShift = 1e-10;  // rotations of the whole scene need one
 
   bool tryStep(TangentEnergy& energy, double& expected_drop);
 
+  bool creeps(double value);
+
   double shift_ = kLeastShift;
+  int iterations_ = 0;
+  double earlier_value_ = 0;
   ShiftedCholesky cholesky_;
 };
 

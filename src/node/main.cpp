@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include <exception>
+#include <stdexcept>
 
 #include "parameters.h"
 #include "publisher.h"
@@ -16,8 +16,14 @@ namespace {
 void loadFirstScene(const Parameters& parameters, const SceneDirectory& directory,
                     core::Runner& runner) {
   if (parameters.scene.empty()) return;
-  auto file = core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
-  runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  try {
+    auto file =
+        core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
+    runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  } catch (const std::exception& fault) {
+    throw std::invalid_argument("parameter ~scene is " + parameters.scene +
+                                "; allowed: a scene file; " + fault.what());
+  }
 }
 
 void run() {

@@ -11,7 +11,11 @@ namespace {
                          const std::string& allowed) {
   std::ostringstream text;
   text << "parameter ~" << name << " is ";
-  value.write(text);
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeBoolean) {
+    text << (value == XmlRpc::XmlRpcValue(true) ? "true" : "false");
+  } else {
+    value.write(text);
+  }
   text << "; allowed: " << allowed;
   throw std::invalid_argument(text.str());
 }

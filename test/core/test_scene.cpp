@@ -102,7 +102,7 @@ TEST(SceneRefuses, BadParticlesAndKeepsNothing) {
        [](Particle& p) { p.position.x() = -kNan; }},
       {"particles[1].position is (inf, 0, 0); allowed: any finite non-zero vector",
        [](Particle& p) { p.position.x() = kInfinity; }},
-      {"particles[1].angular_velocity is (0, nan, 0); allowed: finite, up to 1e30 [rad/s]",
+      {"particles[1].angular_velocity is (0, nan, 0); allowed: finite, up to 1e100 [rad/s]",
        [](Particle& p) { p.angular_velocity.y() = kNan; }},
       {"particles[1].mass is -1; allowed: 0 (meaning 1), or 1e-30 to 1e30 [kg]",
        [](Particle& p) { p.mass = -1; }},
