@@ -1,0 +1,184 @@
+// The checks at the door of a scene: each throws std::invalid_argument, which names item, field,
+// value and what is allowed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "spherical_springs/scene.h"
+
+namespace spherical_springs::core {
+
+using Ids = std::vector<std::uint32_t>;
+
+[[noreturn]] inline void refuse(const std::string& field, const std::string& value,
+                                const std::string& allowed) {
+  throw std::invalid_argument(field + " is " + value + "; allowed: " + allowed);
+}
+
+inline std::string itemName(const std::string& list, std::size_t index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+inline std::string toText(const Vector3& v) {
+  return "(" + toText(v.x()) + ", " + toText(v.y()) + ", " + toText(v.z()) + ")";
+}
+
+template <class Item>
+void checkFields(const Item& item) {
+  Item::visitFields(item, [](const char* field, double value, const Range& range) {
+    requireInside(range, value, field);
+  });
+}
+
+/// Puts the item's name before what `check` has to say against it.
+template <class Item, class Check>
+void checkEach(std::vector<Item>& items, const char* list, Check&& check) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    try {
+      check(items[i]);
+    } catch (const std::invalid_argument& fault) {
+      throw std::invalid_argument(itemName(list, i) + "." + fault.what());
+    }
+  }
+}
+
+/// Drops the part of `angular_velocity` along the position; one that is normal to it to rounding
+/// stays as it is, to the last bit.
+inline Vector3 tangentPart(const Vector3& position, const Vector3& angular_velocity) {
+  constexpr double kNormalTolerance = 4 * std::numeric_limits<double>::epsilon();
+  Vector3 tangent = angular_velocity;
+  for (int i = 0; i < 3; ++i) {  // more than once where little is left beside what is dropped
+    const double along = position.dot(tangent);
+    if (std::abs(along) <= kNormalTolerance * tangent.norm()) break;
+    tangent -= along * position;
+  }
+  return tangent;
+}
+
+inline void checkParticle(Particle& particle) {
+  if (!particle.position.allFinite() || particle.position.isZero(0)) {
+    refuse("position", toText(particle.position), "any finite non-zero vector");
+  }
+  if (!(particle.angular_velocity.array().abs() <= kFastest).all()) {
+    refuse("angular_velocity", toText(particle.angular_velocity), "finite, up to 1e100 [rad/s]");
+  }
+  if (particle.mass == 0) particle.mass = 1;
+  checkFields(particle);
+  particle.position = direction(particle.position);
+  particle.angular_velocity = particle.pinned
+                                  ? Vector3(Vector3::Zero())
+                                  : tangentPart(particle.position, particle.angular_velocity);
+}
+
+inline void checkParticles(std::vector<Particle>& particles) {
+  checkEach(particles, "particles", checkParticle);
+}
+
+template <class Item>
+std::vector<std::size_t> indicesOf(const IdTable<Item>& table, const Ids& ids,
+                                   const std::string& list, const std::string& what) {
+  std::vector<std::size_t> indices(ids.size());
+  std::vector<bool> seen(table.size(), false);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto index = table.find(ids[i]);
+    if (!index) refuse(itemName(list, i), std::to_string(ids[i]), "the id of " + what);
+    if (seen[*index]) refuse(itemName(list, i), std::to_string(ids[i]) + " again", "each id once");
+    seen[*index] = true;
+    indices[i] = *index;
+  }
+  return indices;
+}
+
+inline void requireSameLength(const std::string& ids, std::size_t id_count,
+                              const std::string& items, std::size_t item_count) {
+  if (id_count == item_count) return;
+  throw std::invalid_argument(ids + " has " + std::to_string(id_count) + " items and " + items +
+                              " has " + std::to_string(item_count) +
+                              "; allowed: as many of one as of the other");
+}
+
+inline void requireRoom(const std::string& what, std::size_t present, std::size_t added,
+                        std::size_t limit) {
+  if (added <= limit && present <= limit - added) return;
+  throw std::invalid_argument(what + " would be " + std::to_string(present + added) +
+                              " in all; allowed: at most " + std::to_string(limit));
+}
+
+template <class Item>
+void requireFreeIds(const IdTable<Item>& table, std::size_t added, const std::string& what) {
+  if (added <= std::numeric_limits<std::uint32_t>::max() - table.nextId()) return;
+  throw std::invalid_argument(what + ": no ids are left");
+}
+
+template <class Item>
+void requireRisingIds(const IdTable<Item>& table, const Ids& ids, const std::string& list) {
+  std::uint64_t least = table.nextId();
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
+    if (ids[i] < least || ids[i] > kMost) {
+      refuse(itemName(list, i) + ".id", std::to_string(ids[i]),
+             std::to_string(least) + " to " + std::to_string(kMost) + ", rising");
+    }
+    least = std::uint64_t(ids[i]) + 1;
+  }
+}
+
+template <class Spring>
+std::string idListName() {
+  const std::string table = Spring::kTable;
+  return table.substr(0, table.size() - 1) + "_ids";
+}
+
+template <class Spring>
+std::string oneOf() {
+  std::string name = Spring::kTable;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return "a spring among the " + name;
+}
+
+template <class Spring>
+struct Indices {
+  std::vector<std::size_t> values;
+};
+
+template <class Spring>
+struct Marks {
+  std::vector<bool> values;
+};
+
+template <class Spring>
+std::array<std::size_t, Spring::kParticles> particleIndices(const IdTable<Particle>& particles,
+                                                            const Spring& spring) {
+  std::array<std::size_t, Spring::kParticles> indices;
+  for (std::size_t j = 0; j < Spring::kParticles; ++j) {
+    const std::uint32_t id = spring.particles[j];
+    const auto index = particles.find(id);
+    if (!index) refuse(itemName("particles", j), std::to_string(id), "the id of a particle");
+    if (std::find(indices.begin(), indices.begin() + j, *index) != indices.begin() + j) {
+      refuse(itemName("particles", j), std::to_string(id) + " again", "particles that differ");
+    }
+    indices[j] = *index;
+  }
+  return indices;
+}
+
+template <class Spring>
+void checkSpring(Spring& spring, const IdTable<Particle>& particles, const Points& positions) {
+  const auto indices = particleIndices(particles, spring);
+  if (spring.at_rest) {
+    std::array<Vector3, Spring::kParticles> points;
+    for (std::size_t j = 0; j < Spring::kParticles; ++j) points[j] = positions.col(indices[j]);
+    rest(spring, points);
+    spring.at_rest = false;
+  }
+  checkFields(spring);
+}
+
+}  // namespace spherical_springs::core
