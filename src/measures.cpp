@@ -138,7 +138,8 @@ std::string warningOf(const Measures& measures, IntegrationMethod method, double
   constexpr double kBlownUp = 0.1;  // of the energy
   if (state.unconverged_steps > 0) {
     return std::to_string(state.unconverged_steps) +
-           " steps of implicit_euler did not converge: the time step is too long here";
+           " steps of implicit_euler ended before their minimum, where rounding or a triangle "
+           "without area stopped them: they are sound, but less exact";
   }
   const bool takes_energy_out = method == IntegrationMethod::implicit_euler;
   if (measures.energy_error > kBlownUp && !takes_energy_out) {

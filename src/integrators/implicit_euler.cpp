@@ -20,8 +20,7 @@ void ImplicitEuler::step(State& state) {
   state.positions = energy_.positions();
   takeVelocities(targets, state);
   boundEnergy(before - state.dissipated, state);
-  ++state.steps;
-  state.time += time_step_;
+  countStep(time_step_, state);
 }
 
 void ImplicitEuler::damp(State& state) {
@@ -77,7 +76,7 @@ void ImplicitEuler::takeVelocities(const Points& targets, State& state) const {
 void ImplicitEuler::boundEnergy(double most, State& state) const {
   const double kinetic = system_->kinetic(state.angular_velocities);
   const double allowed = most - system_->potential(state.positions).total();
-  if (kinetic <= allowed) return;
+  if (kinetic <= allowed || kinetic == 0) return;
   state.angular_velocities *= std::sqrt(std::max(allowed, 0.) / kinetic);
 }
 

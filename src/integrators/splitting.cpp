@@ -47,8 +47,7 @@ void SplittingIntegrator::step(State& state) {
     kick(scheme.kick[stage] * time_step_, state);
   }
   drift(scheme.drift.back() * time_step_, state);
-  ++state.steps;
-  state.time += time_step_;
+  countStep(time_step_, state);
 }
 
 void SplittingIntegrator::drift(double duration, State& state) const {

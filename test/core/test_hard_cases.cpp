@@ -218,6 +218,47 @@ TEST(ImplicitEuler, TakesEnergyOutAtAThousandTimesTheStableStep) {
   EXPECT_LT(end.conserved(), 1e-6 * start.conserved());
 }
 
+TEST(ImplicitEuler, MakesNoEnergyWhereTheSpringsAreNotConvex) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Scene scene = testing::randomScene(seed, 8, 10, 0, 3);
+    const auto system = std::make_shared<const System>(scene, System::Options());
+    State state = testing::stateOf(scene);
+    const double stable = stableTimeStep(*system, IntegrationMethod::verlet, state.positions);
+    for (const double factor : {0.3, 3., 30.}) {
+      const auto integrator =
+          makeIntegrator(system, IntegrationMethod::implicit_euler, factor * stable);
+      for (int i = 0; i < 30; ++i) {
+        const double before = energies(*system, state).total();
+        integrator->step(state);
+        ASSERT_LE(energies(*system, state).total(), before * (1 + 1e-12)) << seed << " " << factor;
+      }
+    }
+  }
+}
+
+// Where an unconverged minimum leaves no energy for the velocities, and there are none.
+TEST(ImplicitEuler, OfImpossibleSpringsStaysSound) {
+  SpringLists springs = arcs({angleSpring(0, 1, 1), angleSpring(0, 1, kPi)});
+  springs.get<AngleSpring>()[0].damping = 1e30;
+  springs.get<AngleSpring>()[1].stiffness = 1e30;
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 3, -1)};
+  springs.get<SolidAngleSpring>()[0].damping = 1e30;
+  OrientedAngleSpring oriented;
+  oriented.stiffness = 1;
+  oriented.particles = {0, 1, 2};
+  oriented.rest_angle = -1;
+  springs.get<OrientedAngleSpring>().push_back(oriented);
+  oriented.particles = {0, 2, 3};
+  oriented.rest_angle = 0;
+  springs.get<OrientedAngleSpring>().push_back(oriented);
+  oriented.particles = {0, 1, 3};
+  oriented.rest_angle = 3.1;
+  oriented.width = 1e-300;
+  springs.get<OrientedAngleSpring>().push_back(oriented);
+  const Scene scene = sceneOf({{1, 0, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}}, springs);
+  expectSound(Trajectory(scene, "implicit_euler", 1e-3, 200).state);
+}
+
 // Stable at 0.95 of the bound over many steps; the pair is where the bound is sharpest.
 TEST(StableTimeStep, Holds) {
   for (const char* method : {"euler", "verlet", "fourth_order"}) {

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "scenes.h"
+#include "spherical_springs/damping.h"
+#include "spherical_springs/system.h"
+#include "trajectory.h"
+
+namespace spherical_springs::core {
+namespace {
+
+struct Damped {
+  System system;
+  System::Workspace workspace;
+  State state;
+
+  Damped(double damping, SpringDamping kind)
+      : system(scene(damping), {kind, 1}), state(testing::stateOf(scene(damping))) {
+    system.evaluate(state.positions, workspace);
+  }
+  static Scene scene(double damping) {
+    Scene result = testing::randomScene(1, 8, 10, damping, 1);
+    std::vector<Particle> particles = result.particles().items();
+    for (Particle& particle : particles) particle.damping = damping;
+    result.setParticles(result.particles().ids(), particles);
+    return result;
+  }
+  double kick(const Points& torques, double duration) {
+    return system.damping().kick(workspace.end_gradients, torques, duration,
+                                 state.angular_velocities);
+  }
+};
+
+class Dampings : public ::testing::TestWithParam<SpringDamping> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, Dampings,
+                         ::testing::Values(SpringDamping::relative, SpringDamping::own));
+
+// Slow enough for the series, and too fast for it.
+TEST_P(Dampings, TakeOutExactlyWhatTheySay) {
+  for (const double damping : {1e-3, 1., 1e3, 1e12}) {
+    Damped damped(damping, GetParam());
+    const double before = damped.system.kinetic(damped.state.angular_velocities);
+    const double taken = damped.kick(Points::Zero(3, 8), 0.01);
+    const double after = damped.system.kinetic(damped.state.angular_velocities);
+    EXPECT_GT(taken, 0);
+    EXPECT_NEAR(before - after, taken, 1e-13 * before) << damping;
+  }
+}
+
+TEST_P(Dampings, BySeriesAreAFlow) {
+  Damped once(0.1, GetParam()), twice(0.1, GetParam());
+  const Points torques = once.workspace.torques;
+  const double taken = once.kick(torques, 0.01);
+  const double taken_in_parts = twice.kick(torques, 0.004) + twice.kick(torques, 0.006);
+  EXPECT_NEAR(taken, taken_in_parts, 1e-13);
+  EXPECT_LT((once.state.angular_velocities - twice.state.angular_velocities).norm(), 1e-13);
+
+  once.kick(torques, -0.01);
+  const Damped start(0.1, GetParam());
+  EXPECT_LT((once.state.angular_velocities - start.state.angular_velocities).norm(), 1e-13);
+}
+
+// The two ways of computing the flow agree to second order where both hold.
+TEST_P(Dampings, FastOnesAreTheLimitOfSlowOnes) {
+  double differences[2];
+  for (const int fine : {0, 1}) {
+    const double duration = fine ? 0.5 : 1;
+    Damped whole(1, GetParam()), parts(1, GetParam());
+    const Points torques = whole.workspace.torques;
+    for (int i = 0; i < (fine ? 64 : 32); ++i) whole.kick(torques, duration / 32);
+    for (int i = 0; i < (fine ? 8192 : 4096); ++i) parts.kick(torques, duration / 4096);
+    differences[fine] = (whole.state.angular_velocities - parts.state.angular_velocities).norm();
+  }
+  EXPECT_GT(differences[0], 1e-9);
+  EXPECT_LT(differences[1], differences[0]);
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
