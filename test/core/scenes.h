@@ -145,4 +145,27 @@ inline Scene chainScene(unsigned seed, std::uint32_t count, double damping) {
   return sceneOf(particles, springs);
 }
 
+inline SpringLists arcs(std::initializer_list<AngleSpring> list) {
+  SpringLists springs;
+  springs.get<AngleSpring>() = list;
+  return springs;
+}
+
+/// Figure 3 of the report.
+inline SpringLists threeArcs() {
+  return arcs({angleSpring(0, 1, kPi / 2), angleSpring(1, 2, kPi / 2), angleSpring(2, 0, kPi / 2)});
+}
+
+inline SpringLists threeOrientedArcs() {
+  SpringLists springs;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    OrientedAngleSpring spring;
+    spring.particles = {i, (i + 1) % 3, (i + 2) % 3};
+    spring.rest_angle = kPi / 2;
+    spring.stiffness = 1;
+    springs.get<OrientedAngleSpring>().push_back(spring);
+  }
+  return springs;
+}
+
 }  // namespace spherical_springs::core::testing

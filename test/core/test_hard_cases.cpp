@@ -2,11 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
-#include "meshes.h"
 #include "scenes.h"
 #include "spherical_springs/relaxation.h"
 #include "trajectory.h"
@@ -15,6 +13,10 @@ namespace spherical_springs::core {
 namespace {
 
 using testing::angleSpring;
+using testing::arcs;
+using testing::expectSound;
+using testing::threeArcs;
+using testing::threeOrientedArcs;
 using testing::Trajectory;
 
 struct HardCase {
@@ -27,28 +29,6 @@ Scene sceneOf(const std::vector<Vector3>& places, const SpringLists& springs) {
   std::vector<Particle> particles;
   for (const Vector3& place : places) particles.push_back(testing::particleAt(place));
   return testing::sceneOf(particles, springs);
-}
-
-SpringLists arcs(std::initializer_list<AngleSpring> list) {
-  SpringLists springs;
-  springs.get<AngleSpring>() = list;
-  return springs;
-}
-
-SpringLists threeArcs() {
-  return arcs({angleSpring(0, 1, kPi / 2), angleSpring(1, 2, kPi / 2), angleSpring(2, 0, kPi / 2)});
-}
-
-SpringLists threeOrientedArcs() {
-  SpringLists springs;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    OrientedAngleSpring spring;
-    spring.particles = {i, (i + 1) % 3, (i + 2) % 3};
-    spring.rest_angle = kPi / 2;
-    spring.stiffness = 1;
-    springs.get<OrientedAngleSpring>().push_back(spring);
-  }
-  return springs;
 }
 
 SpringLists triangle(double rest_solid_angle) {
@@ -122,16 +102,6 @@ std::vector<HardCase> hardCases() {
   addRatios(cases);
   addCrowds(cases);
   return cases;
-}
-
-void expectSound(const State& state) {
-  EXPECT_TRUE(state.positions.allFinite());
-  EXPECT_TRUE(state.angular_velocities.allFinite());
-  EXPECT_LT(normError(state), 4 * std::numeric_limits<double>::epsilon());
-  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
-    const double along = state.positions.col(i).dot(state.angular_velocities.col(i));
-    EXPECT_LT(std::abs(along), 1e-14 * (1 + state.angular_velocities.col(i).norm()));
-  }
 }
 
 class HardCases : public ::testing::TestWithParam<const char*> {};
@@ -259,57 +229,6 @@ TEST(ImplicitEuler, OfImpossibleSpringsStaysSound) {
   expectSound(Trajectory(scene, "implicit_euler", 1e-3, 200).state);
 }
 
-// Stable at 0.95 of the bound over many steps; the pair is where the bound is sharpest.
-TEST(StableTimeStep, Holds) {
-  for (const char* method : {"euler", "verlet", "fourth_order"}) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      std::vector<Particle> particles(2);
-      testing::Random random(seed);
-      const double rest = random.between(0.5, 2.5);
-      particles[0].position = Vector3(1, 0, 0);
-      particles[1].position = Vector3(std::cos(rest + 1e-3), std::sin(rest + 1e-3), 0);
-      particles[0].mass = particles[1].mass = random.between(0.1, 10);
-      const Scene scene = testing::sceneOf(particles, arcs({angleSpring(0, 1, rest)}));
-      const Trajectory start(scene, method, 1, 0);
-      const double stable =
-          stableTimeStep(*start.system, integrationMethod(method), start.state.positions);
-      const Trajectory end(scene, method, 0.95 * stable, 10000);
-      EXPECT_LT(end.conserved(), 20 * start.conserved()) << method;
-      const Trajectory beyond(scene, method, 2.2 * stable, 1000);
-      EXPECT_GT(beyond.conserved(), 20 * start.conserved()) << "the bound is loose by half";
-    }
-  }
-}
-
-/// An icosphere with springs of arcs and triangles, a little out of shape.
-Scene mesh() {
-  const auto sphere = benchmark_scenes::icosphere(1);
-  testing::Random random(1);
-  std::vector<Particle> particles;
-  for (const Vector3& vertex : sphere.vertices) {
-    particles.push_back(testing::particleAt(vertex + 1e-3 * random.unitVector()));
-  }
-  SpringLists springs;
-  for (const auto& [a, b] : sphere.edges) {
-    springs.get<AngleSpring>().push_back(angleSpring(a, b, 0));
-    springs.get<AngleSpring>().back().at_rest = true;
-  }
-  for (const auto& [a, b, c] : sphere.faces) {
-    springs.get<SolidAngleSpring>().push_back(testing::solidAngleSpring(a, b, c, 4 * kPi / 80));
-    springs.get<SolidAngleSpring>().back().stiffness = 10;
-  }
-  return testing::sceneOf(particles, springs);
-}
-
-TEST(StableTimeStep, OfAMeshHoldsAndIsWithinAFactorOf2) {
-  const Trajectory start(mesh(), "verlet", 1, 0);
-  const double stable =
-      stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
-  const double energy = start.conserved();
-  EXPECT_LT(Trajectory(mesh(), "verlet", 0.95 * stable, 5000).conserved(), 2 * energy);
-  EXPECT_GT(Trajectory(mesh(), "verlet", 2 * stable, 500).conserved(), 100 * energy);
-}
-
 TEST(Measures, WarnBeforeAnyoneHasToWonder) {
   const Scene scene = testing::randomScene(1, 8, 10);
   const Trajectory start(scene, "verlet", 1, 0);
@@ -321,45 +240,6 @@ TEST(Measures, WarnBeforeAnyoneHasToWonder) {
   EXPECT_NE(warning(10, start.state).find("above the stable one"), std::string::npos);
   const Trajectory blown_up(scene, "verlet", 10, 100);
   EXPECT_NE(warning(10, blown_up.state).find("the energy is off"), std::string::npos);
-}
-
-// A million steps: no drift of energy, momentum kept to rounding.
-TEST(LongRun, KeepsEnergyAndAngularMomentum) {
-  const Scene scene =
-      testing::sceneOf({testing::particleAt({1, 0.15, 0.05}), testing::particleAt({0.1, 1, 0.1}),
-                        testing::particleAt({0.1, 0.2, 1})},
-                       threeArcs());
-  for (const char* method : {"euler", "verlet", "fourth_order"}) {
-    const Trajectory start(scene, method, 1e-2, 0);
-    Account account(*start.system, start.state);
-    const Trajectory early(scene, method, 1e-2, 10000);
-    const Trajectory end(scene, method, 1e-2, 1000000);
-    const Vector3 momentum = end.system->angularMomentum(end.state.angular_velocities);
-    EXPECT_LT(momentum.norm(), 1e-12) << method;
-    const double bound = std::pow(10, -2 * orderOf(integrationMethod(method)));
-    EXPECT_LT(account.energyError(energies(*early.system, early.state)), bound);
-    EXPECT_LT(account.energyError(energies(*end.system, end.state)), bound);
-    expectSound(end.state);
-  }
-}
-
-TEST(LongRun, OfAThousandParticlesStaysSound) {
-  const std::uint32_t count = 1000;
-  testing::Random random(1);
-  std::vector<Particle> particles;
-  SpringLists springs;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const double turn = 2 * kPi * i / count;
-    particles.push_back(testing::particleAt(Vector3(std::cos(turn), std::sin(turn), 0) +
-                                            2e-3 * random.unitVector()));
-    springs.get<AngleSpring>().push_back(angleSpring(i, (i + 1) % count, 2 * kPi / count));
-  }
-  const Scene scene = testing::sceneOf(particles, springs);
-  const Trajectory start(scene, "verlet", 0.1, 0);
-  const Trajectory end(scene, "verlet", 0.1, 1000000);
-  EXPECT_NEAR(end.conserved(), start.conserved(), 0.02 * start.conserved());
-  EXPECT_LT(end.system->angularMomentum(end.state.angular_velocities).norm(), 1e-12);
-  expectSound(end.state);
 }
 
 }  // namespace

@@ -117,14 +117,7 @@ TEST_P(Relaxation, PartsParticlesOnOneSpot) {
 }
 
 TEST_P(Relaxation, OfOrientedSpringsUndoesAnInversion) {
-  SpringLists springs;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    OrientedAngleSpring spring;
-    spring.particles = {i, (i + 1) % 3, (i + 2) % 3};
-    spring.rest_angle = kPi / 2;
-    spring.stiffness = 1;
-    springs.get<OrientedAngleSpring>().push_back(spring);
-  }
+  const SpringLists springs = testing::threeOrientedArcs();
   const auto result = relaxed(sceneAt({{1, 0.1, 0.1}, {0.2, 0.3, 1}, {0.1, 1, 0.3}}, springs));
   ASSERT_TRUE(result.converged) << result.message;
   const Points& p = result.positions;

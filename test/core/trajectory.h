@@ -1,6 +1,10 @@
 // A scene stepped some way.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -32,5 +36,15 @@ struct Trajectory {
   }
   double conserved() const { return energies(*system, state).total() + state.dissipated; }
 };
+
+inline void expectSound(const State& state) {
+  EXPECT_TRUE(state.positions.allFinite());
+  EXPECT_TRUE(state.angular_velocities.allFinite());
+  EXPECT_LT(normError(state), 4 * std::numeric_limits<double>::epsilon());
+  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
+    const double along = state.positions.col(i).dot(state.angular_velocities.col(i));
+    EXPECT_LT(std::abs(along), 1e-14 * (1 + state.angular_velocities.col(i).norm()));
+  }
+}
 
 }  // namespace spherical_springs::core::testing

@@ -1,0 +1,112 @@
+// Stability of the explicit steps, and what is left after a million of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "meshes.h"
+#include "scenes.h"
+#include "trajectory.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using testing::angleSpring;
+using testing::arcs;
+using testing::expectSound;
+using testing::threeArcs;
+using testing::Trajectory;
+
+// Stable at 0.95 of the bound over many steps; the pair is where the bound is sharpest.
+TEST(StableTimeStep, Holds) {
+  for (const char* method : {"euler", "verlet", "fourth_order"}) {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      std::vector<Particle> particles(2);
+      testing::Random random(seed);
+      const double rest = random.between(0.5, 2.5);
+      particles[0].position = Vector3(1, 0, 0);
+      particles[1].position = Vector3(std::cos(rest + 1e-3), std::sin(rest + 1e-3), 0);
+      particles[0].mass = particles[1].mass = random.between(0.1, 10);
+      const Scene scene = testing::sceneOf(particles, arcs({angleSpring(0, 1, rest)}));
+      const Trajectory start(scene, method, 1, 0);
+      const double stable =
+          stableTimeStep(*start.system, integrationMethod(method), start.state.positions);
+      const Trajectory end(scene, method, 0.95 * stable, 10000);
+      EXPECT_LT(end.conserved(), 20 * start.conserved()) << method;
+      const Trajectory beyond(scene, method, 2.2 * stable, 1000);
+      EXPECT_GT(beyond.conserved(), 20 * start.conserved()) << "the bound is loose by half";
+    }
+  }
+}
+
+/// An icosphere with springs of arcs and triangles, a little out of shape.
+Scene mesh() {
+  const auto sphere = benchmark_scenes::icosphere(1);
+  testing::Random random(1);
+  std::vector<Particle> particles;
+  for (const Vector3& vertex : sphere.vertices) {
+    particles.push_back(testing::particleAt(vertex + 1e-3 * random.unitVector()));
+  }
+  SpringLists springs;
+  for (const auto& [a, b] : sphere.edges) {
+    springs.get<AngleSpring>().push_back(angleSpring(a, b, 0));
+    springs.get<AngleSpring>().back().at_rest = true;
+  }
+  for (const auto& [a, b, c] : sphere.faces) {
+    springs.get<SolidAngleSpring>().push_back(testing::solidAngleSpring(a, b, c, 4 * kPi / 80));
+    springs.get<SolidAngleSpring>().back().stiffness = 10;
+  }
+  return testing::sceneOf(particles, springs);
+}
+
+TEST(StableTimeStep, OfAMeshHoldsAndIsWithinAFactorOf2) {
+  const Trajectory start(mesh(), "verlet", 1, 0);
+  const double stable =
+      stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+  const double energy = start.conserved();
+  EXPECT_LT(Trajectory(mesh(), "verlet", 0.95 * stable, 5000).conserved(), 2 * energy);
+  EXPECT_GT(Trajectory(mesh(), "verlet", 2 * stable, 500).conserved(), 100 * energy);
+}
+
+// A million steps: no drift of energy, momentum kept to rounding.
+TEST(LongRun, KeepsEnergyAndAngularMomentum) {
+  const Scene scene =
+      testing::sceneOf({testing::particleAt({1, 0.15, 0.05}), testing::particleAt({0.1, 1, 0.1}),
+                        testing::particleAt({0.1, 0.2, 1})},
+                       threeArcs());
+  for (const char* method : {"euler", "verlet", "fourth_order"}) {
+    const Trajectory start(scene, method, 1e-2, 0);
+    Account account(*start.system, start.state);
+    const Trajectory early(scene, method, 1e-2, 10000);
+    const Trajectory end(scene, method, 1e-2, 1000000);
+    const Vector3 momentum = end.system->angularMomentum(end.state.angular_velocities);
+    EXPECT_LT(momentum.norm(), 1e-12) << method;
+    const double bound = std::pow(10, -2 * orderOf(integrationMethod(method)));
+    EXPECT_LT(account.energyError(energies(*early.system, early.state)), bound);
+    EXPECT_LT(account.energyError(energies(*end.system, end.state)), bound);
+    expectSound(end.state);
+  }
+}
+
+TEST(LongRun, OfAThousandParticlesStaysSound) {
+  const std::uint32_t count = 1000;
+  testing::Random random(1);
+  std::vector<Particle> particles;
+  SpringLists springs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double turn = 2 * kPi * i / count;
+    particles.push_back(testing::particleAt(Vector3(std::cos(turn), std::sin(turn), 0) +
+                                            2e-3 * random.unitVector()));
+    springs.get<AngleSpring>().push_back(angleSpring(i, (i + 1) % count, 2 * kPi / count));
+  }
+  const Scene scene = testing::sceneOf(particles, springs);
+  const Trajectory start(scene, "verlet", 0.1, 0);
+  const Trajectory end(scene, "verlet", 0.1, 1000000);
+  EXPECT_NEAR(end.conserved(), start.conserved(), 0.02 * start.conserved());
+  EXPECT_LT(end.system->angularMomentum(end.state.angular_velocities).norm(), 1e-12);
+  expectSound(end.state);
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
