@@ -167,9 +167,13 @@ class Relaxation {
       return;
     }
     const std::string spring = nearlyUndefinedSpring(system_, result_.positions);
-    const std::string reason =
-        spring.empty() ? "rounding ends it" : spring + " has no area, which ends it";
-    result_.message = "no step lowers the energy any more: " + reason + " at a largest torque of " +
+    std::string reason = "rounding ends it";
+    if (!spring.empty()) {
+      reason = spring + " has no area, which ends it";
+    } else if (!atRoundingFloor()) {
+      reason = "a long series of them gained next to nothing, which ends it";
+    }
+    result_.message = "steps lower the energy no further: " + reason + " at a largest torque of " +
                       toText(result_.max_torque) + " N m, above the tolerance of " +
                       toText(tolerance_) + " N m";
   }
