@@ -7,27 +7,16 @@
 #include <random>
 #include <stdexcept>
 
+#include "alignment.h"
 #include "minimisation/fire.h"
 #include "minimisation/newton.h"
+#include "minimisation/particle_stiffness.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::unique_ptr<Descent> makeDescent(RelaxationMethod method) {
-  if (method == RelaxationMethod::dynamics) return std::make_unique<Fire>();
-  return std::make_unique<Newton>();
-}
-
-/// Whether no direction has negative curvature beyond what `tolerance` [N m] of torque, and
-/// rounding, leave open.
-bool isMinimum(TangentEnergy& energy, double tolerance) {
-  constexpr double kNegligible = 1e-6;  // of the stiffness scale
-  return energy.unknowns() == 0 ||
-         ShiftedCholesky().factorise(energy, Curvature::exact, kNegligible, tolerance);
-}
 
 /// For each particle the longest arc to another particle of its springs, or 1 where all are on one
 /// spot [rad].
@@ -45,11 +34,10 @@ Eigen::VectorXd reach(const System& system, const Points& positions) {
   return (longest.array() > 0).select(longest, 1);
 }
 
-/// Displaces every particle by up to a share of its reach, the same way every run.
-void displace(const System& system, double share, unsigned seed, TangentEnergy& energy) {
+/// Every particle displaced by up to a share of its reach, the same way every run.
+Points displaced(const System& system, Points positions, double share, unsigned seed) {
   std::mt19937 generator(seed);
-  const Eigen::VectorXd longest = reach(system, energy.positions());
-  Points positions = energy.positions();
+  const Eigen::VectorXd longest = reach(system, positions);
   for (Eigen::Index i = 0; i < positions.cols(); ++i) {
     Eigen::Vector2d step;
     for (double& component : step) component = generator() / (0.5 * std::mt19937::max()) - 1;
@@ -57,7 +45,7 @@ void displace(const System& system, double share, unsigned seed, TangentEnergy& 
     const Vector3 p = positions.col(i);
     positions.col(i) = rotated(p, share * longest[i] * (tangentFrame(p) * step));
   }
-  energy.moveTo(positions);
+  return positions;
 }
 
 /// The first spring whose condition is nearly undefined at `positions`, by its place in the order
@@ -80,48 +68,69 @@ std::string nearlyUndefinedSpring(const System& system, const Points& positions)
 /// One relaxation under way.
 class Relaxation {
  public:
-  Relaxation(const System& system, const Points& positions, const RelaxationOptions& options)
+  /// `newton` is to fit the system.
+  Relaxation(const System& system, const Points& positions, const RelaxationOptions& options,
+             Newton& newton)
       : system_(system),
         options_(options),
         tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
-        energy_(system, positions),
-        first_torque_(energy_.maxTorque()),
-        descent_(makeDescent(options.method)) {
-    result_.energy_before = energy_.value();
+        start_(positions),
+        newton_(newton) {
+    if (options.method == RelaxationMethod::dynamics) fire_ = std::make_unique<Fire>(system);
+    descent_ = fire_ ? static_cast<Descent*>(fire_.get()) : &newton_;
+    newton_.aimAt(tolerance_);
+    descent_->place(positions);
+    first_torque_ = descent_->maxTorque();
+    result_.energy_before = descent_->value();
     keep();
   }
 
   RelaxationResult run() {
-    constexpr unsigned kAttempts = 20;
-    constexpr unsigned kStuckAttempts = 3;
-    unsigned stuck = 0;
-    for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
-      const Outcome outcome = descend();
-      if (outcome == Outcome::ended) return result_;
-      if (outcome == Outcome::within_tolerance && isMinimum(energy_, tolerance_)) {
-        keep();
-        result_.converged = true;
-        result_.message = "converged";
-        return result_;
-      }
-      if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
-      displace(system_, std::min(0.1, 1e-3 * std::pow(10, attempt)), attempt, energy_);
-      descent_->restart();
-    }
-    giveUp();
-    return result_;
+    descendToMinimum();
+    result_.positions = aligned(system_, start_, std::move(result_.positions));
+    return std::move(result_);
   }
 
  private:
   enum class Outcome { within_tolerance, stuck, ended };
 
+  void descendToMinimum() {
+    constexpr unsigned kAttempts = 20;
+    constexpr unsigned kStuckAttempts = 3;
+    unsigned stuck = 0;
+    for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
+      const Outcome outcome = descend();
+      if (outcome == Outcome::ended) return;
+      if (outcome == Outcome::within_tolerance) {
+        keep();
+        if (!leaveSaddle()) {
+          result_.converged = true;
+          result_.message = "converged";
+          return;
+        }
+        continue;
+      }
+      if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
+      descent_->place(displaced(system_, descent_->positions(),
+                                std::min(0.1, 1e-3 * std::pow(10, attempt)), attempt));
+    }
+    giveUp();
+  }
+
+  bool leaveSaddle() {
+    if (fire_) newton_.place(fire_->positions());
+    if (!newton_.leaveSaddle()) return false;
+    if (fire_) fire_->place(newton_.positions());
+    return true;
+  }
+
   Outcome descend() {
-    while (energy_.maxTorque() > tolerance_) {
+    while (descent_->maxTorque() > tolerance_) {
       if (!goOn()) return Outcome::ended;
-      const bool moved = descent_->iterate(energy_);
+      const bool moved = descent_->iterate();
       ++result_.iterations;
       if (isBetter()) keep();
-      if (!moved && energy_.maxTorque() > tolerance_) return Outcome::stuck;
+      if (!moved && descent_->maxTorque() > tolerance_) return Outcome::stuck;
     }
     return Outcome::within_tolerance;
   }
@@ -129,21 +138,22 @@ class Relaxation {
   /// Whether the torque is what rounding of the positions makes of the springs' stiffness.
   bool atRoundingFloor() const {
     constexpr double kRounding = 1e-11;
-    return energy_.maxTorque() < kRounding * energy_.particleStiffness().maxCoeff();
+    return descent_->maxTorque() <
+           kRounding * particleStiffness(system_, descent_->positions()).maxCoeff();
   }
 
   /// Lower in energy than what is kept or, where rounding hides that, in torque.
   bool isBetter() const {
     constexpr double kRounding = 1e-13;
-    const double drop = result_.energy_after - energy_.value();
+    const double drop = result_.energy_after - descent_->value();
     if (std::abs(drop) > kRounding * result_.energy_after) return drop > 0;
-    return energy_.maxTorque() < result_.max_torque;
+    return descent_->maxTorque() < result_.max_torque;
   }
 
   void keep() {
-    result_.positions = energy_.positions();
-    result_.energy_after = energy_.value();
-    result_.max_torque = energy_.maxTorque();
+    result_.positions = descent_->positions();
+    result_.energy_after = descent_->value();
+    result_.max_torque = descent_->maxTorque();
   }
 
   bool goOn() {
@@ -182,9 +192,11 @@ class Relaxation {
   const RelaxationOptions& options_;
   const double tolerance_;
   const Clock::time_point begin_ = Clock::now();
-  TangentEnergy energy_;
-  const double first_torque_;
-  std::unique_ptr<Descent> descent_;
+  const Points& start_;
+  Newton& newton_;
+  std::unique_ptr<Fire> fire_;
+  Descent* descent_;
+  double first_torque_;
   RelaxationResult result_;
 };
 
@@ -198,12 +210,25 @@ RelaxationMethod relaxationMethod(const std::string& name) {
 
 double defaultTolerance(const System& system) { return 1e-9 * system.largestStiffness(); }
 
-RelaxationResult relax(const System& system, const Points& positions,
-                       const RelaxationOptions& options) {
+Relaxer::Relaxer() = default;
+Relaxer::~Relaxer() = default;
+
+RelaxationResult Relaxer::relax(const System& system, const Points& positions,
+                                const RelaxationOptions& options) {
   requireInside(Range{0, kLargest, "0 (the default) to 1e30 [N m]"}, options.tolerance,
                 "tolerance");
   requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
-  return Relaxation(system, positions, options).run();
+  if (newton_ && newton_->fits(system)) {
+    newton_->take(system);
+  } else {
+    newton_ = std::make_unique<Newton>(system, positions);
+  }
+  return Relaxation(system, positions, options, *newton_).run();
+}
+
+RelaxationResult relax(const System& system, const Points& positions,
+                       const RelaxationOptions& options) {
+  return Relaxer().relax(system, positions, options);
 }
 
 }  // namespace spherical_springs::core

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "spherical_springs/sphere.h"
@@ -11,7 +12,7 @@
 namespace spherical_springs::core {
 
 enum class RelaxationMethod {
-  newton,   ///< Newton's method on the sphere, with a sparse Cholesky factorisation
+  newton,   ///< Newton's method on the sphere
   dynamics  ///< damped stepping, by the fast inertial relaxation engine (FIRE)
 };
 
@@ -44,9 +45,27 @@ struct RelaxationOptions {
 /// 1e-9 of the largest stiffness [N m].
 double defaultTolerance(const System& system);
 
-/// Moves free particles from `positions` to a minimum of the potential energy. A start on a saddle
-/// or a maximum is left, the same way every run.
-/// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+class Newton;
+
+/// Relaxes one system after another. What has been prepared for one serves the next, if the same
+/// springs join the same particles, whatever their rest and stiffness. For one thread at a time.
+class Relaxer {
+ public:
+  Relaxer();
+  ~Relaxer();
+
+  /// Moves free particles from `positions` to a minimum of the potential energy. A start on a
+  /// saddle or a maximum is left, the same way every run. What springs join is not turned as a
+  /// whole: of all places that differ by a rotation the result is the nearest to `positions`.
+  /// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+  RelaxationResult relax(const System& system, const Points& positions,
+                         const RelaxationOptions& options);
+
+ private:
+  std::unique_ptr<Newton> newton_;
+};
+
+/// The same, once.
 RelaxationResult relax(const System& system, const Points& positions,
                        const RelaxationOptions& options);
 

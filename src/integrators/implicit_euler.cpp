@@ -9,7 +9,7 @@ namespace spherical_springs::core {
 ImplicitEuler::ImplicitEuler(std::shared_ptr<const System> system, double time_step)
     : system_(std::move(system)),
       time_step_(time_step),
-      energy_(*system_, Eigen::VectorXd(system_->masses() / (time_step * time_step))) {}
+      inertia_(system_->masses() / (time_step * time_step)) {}
 
 void ImplicitEuler::step(State& state) {
   const double before = system_->potential(state.positions).total() +
@@ -17,7 +17,7 @@ void ImplicitEuler::step(State& state) {
   damp(state);
   const Points targets = inertialPositions(state);
   if (!minimise(state.positions, targets)) ++state.unconverged_steps;
-  state.positions = energy_.positions();
+  state.positions = newton_->positions();
   takeVelocities(targets, state);
   boundEnergy(before - state.dissipated, state);
   countStep(time_step_, state);
@@ -43,18 +43,18 @@ Points ImplicitEuler::inertialPositions(const State& state) const {
 bool ImplicitEuler::minimise(const Points& positions, const Points& targets) {
   constexpr int kMostIterations = 100;
   constexpr double kTolerance = 1e-10, kRoundingTolerance = 1e-6;  // of the torque at the start
-  energy_.setTargets(targets);
-  energy_.moveTo(positions);
-  const double at_positions = energy_.value();
-  const double scale = energy_.maxTorque();
-  energy_.moveTo(targets);
-  if (energy_.value() > at_positions) energy_.moveTo(positions);
-  newton_.restart();
+  if (!newton_) newton_ = std::make_unique<Newton>(*system_, positions, inertia_);
+  newton_->setTargets(targets);
+  newton_->place(positions);
+  const double at_positions = newton_->value();
+  const double scale = newton_->maxTorque();
+  newton_->place(targets);
+  if (newton_->value() > at_positions) newton_->place(positions);
   for (int i = 0; i < kMostIterations; ++i) {
-    if (energy_.maxTorque() <= kTolerance * scale) return true;
-    if (!newton_.iterate(energy_)) break;
+    if (newton_->maxTorque() <= kTolerance * scale) return true;
+    if (!newton_->iterate()) break;
   }
-  return energy_.maxTorque() <= kRoundingTolerance * scale;
+  return newton_->maxTorque() <= kRoundingTolerance * scale;
 }
 
 // On a plane the new velocity would be that of the inertial position, plus the way from there over

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "../minimisation/newton.h"
-#include "../minimisation/tangent_energy.h"
 #include "spherical_springs/integrator.h"
 
 namespace spherical_springs::core {
@@ -26,8 +25,8 @@ class ImplicitEuler : public Integrator {
   std::shared_ptr<const System> system_;
   double time_step_;
   System::Workspace workspace_;
-  TangentEnergy energy_;
-  Newton newton_;
+  Eigen::VectorXd inertia_;
+  std::unique_ptr<Newton> newton_;
 };
 
 }  // namespace spherical_springs::core

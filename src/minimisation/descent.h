@@ -1,9 +1,7 @@
 // What the methods of relaxation have in common.
 #pragma once
 
-#include <string>
-
-#include "tangent_energy.h"
+#include "spherical_springs/sphere.h"
 
 namespace spherical_springs::core {
 
@@ -12,12 +10,16 @@ class Descent {
  public:
   virtual ~Descent() = default;
 
-  /// One iteration; `energy` is left at its new positions.
-  /// @return false when rounding lets the method go no further.
-  virtual bool iterate(TangentEnergy& energy) = 0;
+  /// Starts from somewhere, with nothing remembered of the way before.
+  virtual void place(const Points& positions) = 0;
 
-  /// Forgets what earlier iterations have taught, after a move that was not its own.
-  virtual void restart() = 0;
+  /// One iteration.
+  /// @return false when the method gets no further.
+  virtual bool iterate() = 0;
+
+  virtual Points positions() const = 0;  ///< of all particles, in the order of their ids
+  virtual double value() const = 0;      ///< energy [J]
+  virtual double maxTorque() const = 0;  ///< on a free particle [N m]
 };
 
 }  // namespace spherical_springs::core

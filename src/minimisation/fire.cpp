@@ -3,19 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../parallel.h"
+#include "particle_stiffness.h"
+
 namespace spherical_springs::core {
 
-bool Fire::iterate(TangentEnergy& energy) {
+void Fire::place(const Points& positions) {
+  positions_ = positions;
+  velocities_ = Points::Zero(3, positions.cols());
+  time_step_ = kFirstStep;
+  mixing_ = kFirstMixing;
+  downhill_ = age_ = since_least_ = 0;
+  evaluate();
+}
+
+void Fire::evaluate() {
+  value_ = system_.potential(positions_).total();
+  system_.evaluate(positions_, workspace_);
+  for (Eigen::Index i = 0; i < positions_.cols(); ++i) {
+    if (system_.pinned(i)) workspace_.torques.col(i).setZero();
+  }
+}
+
+double Fire::maxTorque() const {
+  return positions_.cols() > 0 ? workspace_.torques.colwise().norm().maxCoeff() : 0;
+}
+
+bool Fire::iterate() {
   constexpr int kInertiaLasts = 50;
-  constexpr int kPatience = 20000;  // iterations without a smaller gradient
+  constexpr int kPatience = 20000;  // iterations without a smaller torque
   constexpr int kDelay = 5;
   constexpr double kGrowth = 1.1, kCut = 0.5, kMixingDecay = 0.99;
   constexpr double kLongestStep = 10 * kFirstStep;
-  if (age_ == 0) velocities_ = Points::Zero(3, energy.positions().cols());
-  if (age_++ % kInertiaLasts == 0) mobility_ = energy.mobility();
+  if (age_++ % kInertiaLasts == 0) {
+    mobility_ = particleStiffness(system_, positions_).cwiseInverse();
+  }
 
-  const Points acceleration = energy.torques() * mobility_.asDiagonal();
-  const double power = energy.torques().cwiseProduct(velocities_).sum();
+  const Points acceleration = workspace_.torques * mobility_.asDiagonal();
+  const double power = workspace_.torques.cwiseProduct(velocities_).sum();
   if (power > 0) {
     const double speed = velocities_.norm();
     const double pull = acceleration.norm();
@@ -31,17 +56,15 @@ bool Fire::iterate(TangentEnergy& energy) {
     downhill_ = 0;
   }
   velocities_ += time_step_ * acceleration;
+  parallelFor(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
+    positions_.col(i) = rotated(positions_.col(i), time_step_ * velocities_.col(i));
+    velocities_.col(i) -= positions_.col(i).dot(velocities_.col(i)) * positions_.col(i);
+  });
+  evaluate();
 
-  Points positions = energy.positions();
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    positions.col(i) = rotated(positions.col(i), time_step_ * velocities_.col(i));
-    velocities_.col(i) -= positions.col(i).dot(velocities_.col(i)) * positions.col(i);
-  }
-  energy.moveTo(positions);
-
-  const double gradient = energy.gradient().norm();
-  if (since_least_ == 0 || gradient < least_gradient_) {
-    least_gradient_ = gradient;
+  const double torque = workspace_.torques.norm();
+  if (since_least_ == 0 || torque < least_torque_) {
+    least_torque_ = torque;
     since_least_ = 0;
   }
   return ++since_least_ < kPatience;

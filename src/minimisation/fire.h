@@ -1,6 +1,7 @@
 #pragma once
 
 #include "descent.h"
+#include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 
@@ -10,19 +11,30 @@ namespace spherical_springs::core {
 /// of time.
 class Fire : public Descent {
  public:
-  bool iterate(TangentEnergy& energy) override;
-  void restart() override { *this = Fire(); }
+  /// `system` must live longer.
+  explicit Fire(const System& system) : system_(system) {}
+  void place(const Points& positions) override;
+  bool iterate() override;
+  Points positions() const override { return positions_; }
+  double value() const override { return value_; }
+  double maxTorque() const override;
 
  private:
   static constexpr double kFirstStep = 0.1, kFirstMixing = 0.1;
 
+  void evaluate();
+
+  const System& system_;
+  Points positions_;
+  System::Workspace workspace_;
+  double value_ = 0;
   Points velocities_;         // angular
   Eigen::VectorXd mobility_;  // of each particle, 1 / inertia; 0 where pinned
   double time_step_ = kFirstStep, mixing_ = kFirstMixing;
   int downhill_ = 0;  // iterations since the power was last negative
   int age_ = 0;       // iterations
-  double least_gradient_ = 0;
-  int since_least_ = 0;  // iterations since the gradient was least
+  double least_torque_ = 0;
+  int since_least_ = 0;  // iterations since the torque was least
 };
 
 }  // namespace spherical_springs::core

@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace spherical_springs::core {
 namespace {
 
-constexpr double kLongestMove = 0.5;  // of a particle in one step [rad]
-constexpr double kRounding = 1e-13;   // of an energy, a sum over all springs
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLongestMove = 0.7;  // of a particle in one step [rad]
+constexpr double kLeastShift = 1e-7;  // rotations of the whole scene need one
+constexpr double kGreatestShift = 1e3;
+constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
+constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 
 double longestMove(const Eigen::VectorXd& step) {
   double squared = 0;
@@ -19,57 +25,193 @@ double longestMove(const Eigen::VectorXd& step) {
 
 }  // namespace
 
-/// Tries the step of the present factorisation; a step that does not help is taken back.
-bool Newton::tryStep(TangentEnergy& energy, double& expected_drop) {
-  Eigen::VectorXd step = -cholesky_.solve(energy.gradient());
-  step *= std::min(1., kLongestMove / longestMove(step));
-  expected_drop = -energy.gradient().dot(step) - 0.5 * cholesky_.quadratic(step);
+Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd inertia)
+    : threads_(system.threads()),
+      energy_(system, positions, std::move(inertia)),
+      solver_(energy_.pattern(), threads_) {}
 
-  const Points start = energy.positions();
-  const double value = energy.value();
-  const double gradient_norm = energy.gradient().norm();
-  energy.moveTo(energy.moved(step));
-  const double drop = value - energy.value();
-  // Where the energy cannot resolve the drop any more, the gradient still can.
-  const bool resolved = expected_drop > kRounding * value;
-  if (resolved ? drop > 1e-4 * expected_drop : energy.gradient().norm() < gradient_norm) {
-    if (!resolved || drop > 0.75 * expected_drop) shift_ = std::max(shift_ / 10, kLeastShift);
-    return true;
+void Newton::place(const Points& positions) {
+  energy_.place(positions);
+  model_ = Model::definite;
+  shift_ = kLeastShift;
+  radius_ = kInfinity;
+  scale_.setZero(energy_.freeCount());
+  iterations_ = calm_iterations_ = 0;
+  evaluate();
+}
+
+/// Energy, gradient and the Hessian that the model asks for.
+void Newton::evaluate() {
+  constexpr double kLeastShare = 1e-12;
+  if (model_ != Model::exact) {
+    energy_.evaluate(Curvature::definite);
+    for (std::size_t i = 0; i < energy_.freeCount(); ++i) {
+      const auto& block = energy_.hessian()[energy_.pattern().diagonal[i]];
+      scale_[i] = std::max(scale_[i], 0.5 * block.trace());
+    }
+    if (scale_.size() > 0) scale_ = scale_.cwiseMax(kLeastShare * scale_.maxCoeff());
   }
-  energy.moveTo(start);
+  if (model_ == Model::indefinite) definite_ = energy_.hessian();
+  if (model_ != Model::definite) energy_.evaluate(Curvature::exact);
+}
+
+ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) {
+  const auto* definite = model_ == Model::indefinite ? &definite_ : nullptr;
+  return solver_.minimum(energy_, definite, shift_ * scale_, gradient, tolerance);
+}
+
+/// How much of the gradient a step may leave: little where earlier steps have left little.
+double Newton::tolerance() const {
+  constexpr double kMost = 0.1, kLeast = 1e-4;
+  if (iterations_ == 0) return kMost;
+  const double left = energy_.gradient().norm() / earlier_gradient_;
+  const double enough = 0.3 * wanted_torque_ / energy_.maxTorque();
+  return std::clamp(std::max(0.9 * std::pow(left, 1.5), enough), kLeast, kMost);
+}
+
+double Newton::scaledLength(const Eigen::VectorXd& step) const {
+  double squared = 0;
+  for (Eigen::Index i = 0; i < scale_.size(); ++i) {
+    squared += scale_[i] * step.segment<2>(2 * i).squaredNorm();
+  }
+  return std::sqrt(squared);
+}
+
+/// Goes on from where conjugate gradients met negative curvature to the radius; after T. Steihaug,
+/// SIAM J. Numer. Anal. 20 (1983).
+void Newton::goDownward(ModelMinimum& minimum) const {
+  double length = kLongestMove / longestMove(minimum.downward);
+  if (radius_ < kInfinity) {
+    const double room = std::pow(radius_, 2) - std::pow(scaledLength(minimum.step), 2);
+    length = std::min(length, std::sqrt(std::max(room, 0.)) / scaledLength(minimum.downward));
+  }
+  minimum.step += length * minimum.downward;
+}
+
+void Newton::keepInside(Eigen::VectorXd& step) const {
+  step *= std::min({1., radius_ / scaledLength(step), kLongestMove / longestMove(step)});
+}
+
+bool Newton::iterate() {
+  constexpr int kMostAttempts = 40;
+  if (creeps()) return false;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    ModelMinimum found = minimum(energy_.gradient(), tolerance());
+    if (found.indefinite && model_ == Model::exact) {
+      model_ = Model::indefinite;
+      evaluate();
+      continue;
+    }
+    if (found.indefinite && found.downward.size() == 0) {  // by rounding
+      shift_ = std::max(10 * shift_, 1e-6);
+      continue;
+    }
+    if (found.indefinite) goDownward(found);
+    keepInside(found.step);
+    const Trial trial = tryStep(found);
+    if (trial != Trial::rejected) return trial == Trial::accepted;
+  }
   return false;
 }
 
-void Newton::restart() {
-  shift_ = kLeastShift;
-  iterations_ = 0;
+Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
+  const double value = energy_.value();
+  const double gradient = energy_.gradient().norm();
+  const double expected = energy_.expectedDrop(minimum.step);
+  const double length = scaledLength(minimum.step);
+  // Where the energy cannot resolve the drop any more, the gradient still can.
+  const bool resolved = expected > kRounding * value;
+  const Model model = model_;
+
+  // The Hessian of the next step is computed along with the gradient.
+  calm_iterations_ = minimum.indefinite ? 0 : calm_iterations_ + 1;
+  if (minimum.indefinite) model_ = Model::indefinite;
+  if (calm_iterations_ >= 2) model_ = Model::exact;
+  energy_.mark();
+  energy_.move(minimum.step);
+  evaluate();
+  const double ratio = (value - energy_.value()) / expected;
+  if (resolved && ratio < kPoor) correct();
+
+  const double drop = value - energy_.value();
+  if (resolved ? drop > 1e-4 * expected : energy_.gradient().norm() < gradient) {
+    if (!resolved || ratio > kGood) {
+      shift_ = std::max(shift_ / 4, kLeastShift);
+      radius_ = std::max(radius_, 2 * length);
+    } else if (ratio < kPoor) {
+      shift_ = std::min(4 * shift_, kGreatestShift);
+      radius_ = length / 2;
+    }
+    earlier_gradient_ = gradient;
+    ++iterations_;
+    return Trial::accepted;
+  }
+  energy_.goBack();
+  model_ = model;
+  evaluate();
+  shift_ = std::max(4 * shift_, 1e-5);
+  radius_ = length / 2;
+  return resolved ? Trial::rejected : Trial::exhausted;
+}
+
+/// Another step from where one has led out of a narrow bent valley, as stiff springs make them
+/// where soft ones, or none, hold the rest: stiff springs let go at once.
+void Newton::correct() {
+  const Model model = model_;
+  ModelMinimum found = minimum(energy_.gradient(), 0.1);
+  if (found.indefinite) return;
+  keepInside(found.step);
+  energy_.move(found.step);
+  evaluate();
+  model_ = model;
 }
 
 /// Whether hundreds of iterations have brought next to nothing, as on the way into a place where
 /// the energy has no derivative.
-bool Newton::creeps(double value) {
+bool Newton::creeps() {
   constexpr int kWindow = 300;
   constexpr double kNextToNothing = 1e-6;
-  if (iterations_++ % kWindow != 0) return false;
-  const bool first = iterations_ == 1;
-  const bool creeping = !first && value > (1 - kNextToNothing) * earlier_value_;
-  earlier_value_ = value;
+  if (iterations_ % kWindow != 0) return false;
+  const bool creeping = iterations_ > 0 && energy_.value() > (1 - kNextToNothing) * earlier_value_;
+  earlier_value_ = energy_.value();
   return creeping;
 }
 
-bool Newton::iterate(TangentEnergy& energy) {
-  constexpr double kGreatestShift = 1e12;
-  if (creeps(energy.value())) return false;
-  for (; shift_ < kGreatestShift; shift_ = std::max(10 * shift_, 1e-6)) {
-    if (!cholesky_.factorise(energy, Curvature::exact, shift_) &&
-        !cholesky_.factorise(energy, Curvature::definite, shift_)) {
-      continue;
-    }
-    double expected_drop;
-    if (tryStep(energy, expected_drop)) return true;
-    if (expected_drop <= kRounding * energy.value()) break;
+bool Newton::leaveSaddle() {
+  constexpr double kNegligible = 1e-6;  // curvature, of the stiffness
+  constexpr double kProbeTolerance = 3e-2;
+  if (energy_.freeCount() == 0) return false;
+  shift_ = kNegligible;
+  if (model_ == Model::definite) {
+    model_ = Model::exact;
+    evaluate();
   }
-  shift_ = kLeastShift;
+  std::mt19937 generator(1);
+  Eigen::VectorXd probe(energy_.gradient().size());
+  for (double& component : probe) component = generator() / (0.5 * std::mt19937::max()) - 1;
+  ModelMinimum found = minimum(probe, kProbeTolerance);
+  if (found.indefinite && model_ == Model::exact) {
+    model_ = Model::indefinite;
+    evaluate();
+    found = minimum(probe, kProbeTolerance);
+  }
+  if (!found.indefinite || found.downward.size() == 0) return false;
+
+  const double value = energy_.value();
+  const Eigen::VectorXd direction = found.downward / longestMove(found.downward);
+  energy_.mark();
+  for (double length = 0.1; length > 1e-9; length /= 4) {
+    for (const double sign : {1., -1.}) {
+      energy_.move(sign * length * direction);
+      evaluate();
+      if (energy_.value() < value) {
+        place(energy_.positions());
+        return true;
+      }
+      energy_.goBack();
+    }
+  }
+  evaluate();
   return false;
 }
 

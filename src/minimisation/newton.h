@@ -1,28 +1,66 @@
 #pragma once
 
 #include "descent.h"
-#include "shifted_cholesky.h"
+#include "model_solver.h"
+#include "tangent_energy.h"
 
 namespace spherical_springs::core {
 
-/// Newton's method with the shift of Levenberg and Marquardt: the exact Hessian where it is
-/// positive definite, a definite part of it elsewhere.
+/// Newton's method, with the shift of Levenberg and Marquardt where the energy is not as its
+/// quadratic model has it, and steps along directions of negative curvature within a radius.
 class Newton : public Descent {
  public:
-  bool iterate(TangentEnergy& energy) override;
-  void restart() override;
+  /// `positions`: where particles are about; `inertia`: as TangentEnergy has it.
+  Newton(const System& system, const Points& positions, Eigen::VectorXd inertia = {});
+
+  /// As of TangentEnergy; what has been prepared for earlier systems goes on serving.
+  bool fits(const System& system) const { return energy_.fits(system); }
+  void take(const System& system) { energy_.take(system); }
+  void setTargets(const Points& targets) { energy_.setTargets(targets); }
+
+  /// The torque [N m] that is wanted, so that no step goes further for nothing.
+  void aimAt(double torque) { wanted_torque_ = torque; }
+
+  void place(const Points& positions) override;
+  bool iterate() override;
+  Points positions() const override { return energy_.positions(); }
+  double value() const override { return energy_.unit() * energy_.value(); }
+  double maxTorque() const override { return energy_.maxTorque(); }
+
+  /// Where the torque vanishes: whether a direction leads down all the same, beyond what rounding
+  /// leaves open; if so, goes along it.
+  bool leaveSaddle();
 
  private:
-  static constexpr double kLeastShift = 1e-10;  // rotations of the whole scene need one
+  /// The Hessian of the model: a definite part of the exact one, at first; the exact one; or the
+  /// exact one with the definite part beside it for the preconditioner, where it has negative
+  /// curvature.
+  enum class Model { definite, exact, indefinite };
+  enum class Trial { accepted, rejected, exhausted };
 
-  bool tryStep(TangentEnergy& energy, double& expected_drop);
+  void evaluate();
+  ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
+  double tolerance() const;
+  double scaledLength(const Eigen::VectorXd& step) const;
+  void goDownward(ModelMinimum& minimum) const;
+  void keepInside(Eigen::VectorXd& step) const;
+  Trial tryStep(const ModelMinimum& minimum);
+  void correct();
+  bool creeps();
 
-  bool creeps(double value);
-
-  double shift_ = kLeastShift;
+  int threads_;
+  TangentEnergy energy_;
+  ModelSolver solver_;
+  TangentEnergy::Hessian definite_;  // beside the exact one, while the model is indefinite
+  Model model_ = Model::definite;
+  Eigen::VectorXd scale_;  // stiffness at each free particle, of which the shift is a share
+  double shift_ = 0;
+  double radius_ = 0;  // that steps stay inside, in their scaled length
+  double wanted_torque_ = 0;
   int iterations_ = 0;
+  int calm_iterations_ = 0;  // since negative curvature
+  double earlier_gradient_ = 0;
   double earlier_value_ = 0;
-  ShiftedCholesky cholesky_;
 };
 
 }  // namespace spherical_springs::core

@@ -3,213 +3,304 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../parallel.h"
+#include "../kernels/hessian_kernels.h"
+#include "curve_order.h"
 
 namespace spherical_springs::core {
 
-TangentEnergy::TangentEnergy(const System& system, const Points& positions) : system_(system) {
-  findFree();
-  moveTo(positions);
+TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
+    : threads_(system.threads()), inertia_(std::move(inertia)) {
+  number(system, positions);
+  forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
+  take(system);
+  gradient_.resize(2 * freeCount());
+  hessian_.resize(pattern_.graph.neighbours.size());
+  block_values_.resize(pattern_.order.blocks());
 }
 
-TangentEnergy::TangentEnergy(const System& system, Eigen::VectorXd inertia)
-    : system_(system), inertia_(std::move(inertia)) {
-  findFree();
+/// Free particles along a curve, pinned ones after them.
+void TangentEnergy::number(const System& system, const Points& positions) {
+  particles_ = curveOrder(positions);
+  const auto free_end = std::stable_partition(particles_.begin(), particles_.end(),
+                                              [&](std::uint32_t i) { return !system.pinned(i); });
+  numbers_.resize(particles_.size());
+  for (std::uint32_t n = 0; n < particles_.size(); ++n) numbers_[particles_[n]] = n;
+  pattern_ = BlockPattern(freeGraph(system, free_end - particles_.begin()), threads_);
 }
 
-void TangentEnergy::findFree() {
-  unknown_.assign(system_.particleCount(), -1);
-  frames_.resize(system_.particleCount());
-  for (Eigen::Index i = 0; i < system_.particleCount(); ++i) {
-    if (system_.pinned(i)) continue;
-    unknown_[i] = static_cast<Eigen::Index>(free_.size());
-    free_.push_back(i);
-  }
-  gradient_.resize(unknowns());
-}
+/// Which free particles, by number, springs join.
+Graph TangentEnergy::freeGraph(const System& system, std::size_t free) const {
+  std::vector<std::uint32_t> first(free + 1, 0);
+  const auto forEachPair = [&](const auto& visit) {
+    forEachKind([&](auto kind) {
+      for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+        for (const std::uint32_t i : spring.particles) {
+          for (const std::uint32_t j : spring.particles) {
+            if (i != j && numbers_[i] < free && numbers_[j] < free) visit(numbers_[i], numbers_[j]);
+          }
+        }
+      }
+    });
+  };
+  forEachPair([&](std::uint32_t i, std::uint32_t) { ++first[i + 1]; });
+  for (std::size_t i = 0; i < free; ++i) first[i + 1] += first[i] + 1;
+  std::vector<std::uint32_t> all(first.back()), next(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < free; ++i) all[next[i]++] = i;
+  forEachPair([&](std::uint32_t i, std::uint32_t j) { all[next[i]++] = j; });
 
-double TangentEnergy::maxTorque() const {
-  double largest = 0;
-  for (Eigen::Index u = 0; u < unknowns(); u += 2) {
-    largest = std::max(largest, gradient_.segment<2>(u).norm());
-  }
-  return largest;
-}
-
-Points TangentEnergy::moved(const Eigen::VectorXd& step) const {
-  Points result = positions_;
-  parallelFor(free_.size(), system_.threads(), [&](std::ptrdiff_t f) {
-    const Eigen::Index i = free_[f];
-    const Vector3 p = positions_.col(i);
-    result.col(i) = rotated(p, p.cross(frames_[i] * step.segment<2>(2 * f)));
+  std::vector<std::uint32_t> kept(free);
+  parallelFor(free, threads_, [&](std::ptrdiff_t i) {
+    const auto begin = all.begin() + first[i], end = all.begin() + first[i + 1];
+    std::sort(begin, end);
+    kept[i] = static_cast<std::uint32_t>(std::unique(begin, end) - begin);
   });
-  return result;
+  Graph graph;
+  graph.first.assign(free + 1, 0);
+  for (std::size_t i = 0; i < free; ++i) graph.first[i + 1] = graph.first[i] + kept[i];
+  graph.neighbours.resize(graph.first.back());
+  parallelFor(free, threads_, [&](std::ptrdiff_t i) {
+    std::copy_n(all.begin() + first[i], kept[i], graph.neighbours.begin() + graph.first[i]);
+  });
+  return graph;
 }
 
-void TangentEnergy::moveTo(const Points& positions) {
-  positions_ = positions;
-  value_ = system_.potential(positions_).total();
-  system_.evaluate(positions_, workspace_);
-  if (inertia_.size() > 0) addInertia();
-  parallelFor(system_.particleCount(), system_.threads(), [&](std::ptrdiff_t i) {
-    const Vector3 p = positions_.col(i);
-    frames_[i] = tangentFrame(p);
-    if (unknown_[i] < 0) return;
-    // torque = -p x grad, and grad is tangent, so grad = p x torque
-    gradient_.segment<2>(2 * unknown_[i]) =
-        frames_[i].transpose() * p.cross(workspace_.torques.col(i));
+/// Springs by the block of their first free particle in the order here.
+template <class Spring>
+void TangentEnergy::compile(const System& system) {
+  constexpr std::size_t kEnds = Spring::kParticles;
+  auto& compiled = compiled_.get<Spring>();
+  const auto& springs = system.springs<Spring>();
+  const std::size_t blocks = pattern_.order.blocks();
+  const auto lowest = [&](const Spring& spring) {
+    std::uint32_t least = ~0u;
+    for (const std::uint32_t i : spring.particles) least = std::min(least, numbers_[i]);
+    return least;
+  };
+  std::vector<std::uint32_t> first(particles_.size() + 1, 0);
+  for (const Spring& spring : springs) ++first[lowest(spring) + 1];
+  for (std::size_t n = 0; n < particles_.size(); ++n) first[n + 1] += first[n];
+  compiled.first.resize(blocks + 1);
+  for (std::size_t b = 0; b <= blocks; ++b) {
+    compiled.first[b] = first[pattern_.order.first_node[b]];
+  }
+  compiled.sources.resize(springs.size());
+  for (std::uint32_t s = 0; s < springs.size(); ++s) {
+    compiled.sources[first[lowest(springs[s])]++] = s;
+  }
+  compiled.springs.resize(springs.size());
+  compiled.places.resize(springs.size());
+  parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
+    Spring& spring = compiled.springs[s];
+    spring = springs[compiled.sources[s]];
+    for (std::uint32_t& i : spring.particles) i = numbers_[i];
+    for (std::size_t i = 0; i < kEnds; ++i) {
+      for (std::size_t j = 0; j < kEnds; ++j) {
+        const std::uint32_t row = spring.particles[i], column = spring.particles[j];
+        const bool stored = row < freeCount() && column < freeCount();
+        compiled.places[s][kEnds * i + j] =
+            stored ? pattern_.place(row, column) : HessianArrays::kNotStored;
+      }
+    }
   });
 }
 
-void TangentEnergy::addInertia() {
-  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
-    const Arc way = arc(positions_.col(i), targets_.col(i));
-    value_ += 0.5 * inertia_[i] * way.angle * way.angle;
-    workspace_.torques.col(i) += inertia_[i] * way.angle * way.axis;
+bool TangentEnergy::fits(const System& system) const {
+  if (static_cast<std::size_t>(system.particleCount()) != particles_.size()) return false;
+  for (std::size_t n = 0; n < particles_.size(); ++n) {
+    if (system.pinned(particles_[n]) != (n >= freeCount())) return false;
   }
+  bool fits = true;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& compiled = compiled_.get<Spring>();
+    const auto& springs = system.springs<Spring>();
+    fits = fits && springs.size() == compiled.springs.size();
+    for (std::size_t s = 0; fits && s < compiled.springs.size(); ++s) {
+      for (std::size_t j = 0; j < Spring::kParticles; ++j) {
+        fits = fits && numbers_[springs[compiled.sources[s]].particles[j]] ==
+                           compiled.springs[s].particles[j];
+      }
+    }
+  });
+  return fits;
+}
+
+void TangentEnergy::take(const System& system) {
+  unit_ = system.largestStiffness();
+  if (inertia_.size() > 0) unit_ = std::max(unit_, inertia_.maxCoeff());
+  if (unit_ == 0) unit_ = 1;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    auto& compiled = compiled_.get<Spring>();
+    const auto& springs = system.springs<Spring>();
+    parallelFor(compiled.springs.size(), threads_, [&](std::ptrdiff_t s) {
+      Spring spring = springs[compiled.sources[s]];
+      spring.particles = compiled.springs[s].particles;
+      spring.stiffness /= unit_;
+      compiled.springs[s] = spring;
+    });
+  });
+}
+
+void TangentEnergy::place(const Points& positions) {
+  points_.resize(particles_.size());
+  frames_.resize(particles_.size());
+  parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
+    points_[n] = positions.col(particles_[n]);
+    frames_[n] = tangentFrame(points_[n]);
+  });
+  pinned_value_ = 0;
+  forEachKind([&](auto kind) {
+    const auto& compiled = compiled_.get<typename decltype(kind)::type>();
+    for (std::size_t s = compiled.first.back(); s < compiled.springs.size(); ++s) {
+      pinned_value_ += addOne(compiled, s, Curvature::definite);
+    }
+  });
+}
+
+void TangentEnergy::setTargets(const Points& targets) {
+  targets_.resize(freeCount());
+  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(particles_[n]);
+}
+
+void TangentEnergy::move(const Eigen::VectorXd& step) {
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    TangentFrame& frame = frames_[n];
+    points_[n] = (points_[n] + frame * step.segment<2>(2 * n)).normalized();
+    const Vector3 x = frame.col(0);
+    frame.col(0) = (x - x.dot(points_[n]) * points_[n]).normalized();
+    frame.col(1) = points_[n].cross(frame.col(0));
+  });
+}
+
+void TangentEnergy::mark() {
+  marked_points_ = points_;
+  marked_frames_ = frames_;
+}
+
+void TangentEnergy::goBack() {
+  points_ = marked_points_;
+  frames_ = marked_frames_;
+}
+
+double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
+  const Graph& graph = pattern_.graph;
+  return -parallelSum(freeCount(), threads_, [&](std::ptrdiff_t i) {
+    const Eigen::Vector2d product =
+        rowProduct<double, 2>(graph, hessian_, step, graph.first[i], graph.first[i + 1]);
+    return step.segment<2>(2 * i).dot(gradient_.segment<2>(2 * i) + 0.5 * product);
+  });
 }
 
 namespace {
 
-/// Frames of the particles of a spring.
+/// Of kinds that have a kernel: which, and the rest value that it takes.
+HessianKernel<2> kernelFor(const AngleSpring&) { return hessianKernels().angle_springs; }
+HessianKernel<3> kernelFor(const SolidAngleSpring&) { return hessianKernels().solid_angle_springs; }
 template <class Spring>
-std::array<TangentFrame, Spring::kParticles> framesOf(const Spring& spring,
-                                                      const std::vector<TangentFrame>& frames) {
-  std::array<TangentFrame, Spring::kParticles> result;
-  for (std::size_t j = 0; j < Spring::kParticles; ++j) result[j] = frames[spring.particles[j]];
-  return result;
+void* kernelFor(const Spring&) {
+  return nullptr;
 }
-
-/// Calls `visit(i, j)` for each pair of ends of a spring that has a block in the lower triangle.
-template <class Spring, class Visitor>
-void forEachBlock(const Spring& spring, const std::vector<Eigen::Index>& unknown,
-                  const Visitor& visit) {
-  for (std::size_t i = 0; i < Spring::kParticles; ++i) {
-    const Eigen::Index row = unknown[spring.particles[i]];
-    for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-      const Eigen::Index column = unknown[spring.particles[j]];
-      if (column >= 0 && row >= column) visit(i, j, row, column);
-    }
-  }
-}
+const double& restOf(const AngleSpring& spring) { return spring.rest_angle; }
+const double& restOf(const SolidAngleSpring& spring) { return spring.rest_solid_angle; }
 
 }  // namespace
 
-void TangentEnergy::buildPattern() {
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto addBlock = [&](std::size_t, std::size_t, Eigen::Index row, Eigen::Index column) {
-    for (int c = 0; c < 2; ++c) {
-      for (int r = row == column ? c : 0; r < 2; ++r) {
-        entries.emplace_back(2 * row + r, 2 * column + c, 0);
-      }
-    }
-  };
-  for (std::size_t f = 0; f < free_.size(); ++f) addBlock(0, 0, f, f);
-  forEachKind([&](auto kind) {
-    for (const auto& spring : system_.springs<typename decltype(kind)::type>()) {
-      forEachBlock(spring, unknown_, addBlock);
-    }
-  });
-  hessian_.resize(unknowns(), unknowns());
-  hessian_.setFromTriplets(entries.begin(), entries.end());
-
-  for (std::size_t f = 0; f < free_.size(); ++f) diagonal_blocks_.push_back(block(f, f));
-  forEachKind([&](auto kind) {
-    for (const auto& spring : system_.springs<typename decltype(kind)::type>()) {
-      forEachBlock(spring, unknown_,
-                   [&](std::size_t, std::size_t, Eigen::Index row, Eigen::Index column) {
-                     blocks_.push_back(block(row, column));
-                   });
-    }
-  });
-}
-
-TangentEnergy::Block TangentEnergy::block(Eigen::Index row, Eigen::Index column) const {
-  Block result;
-  for (int c = 0; c < 2; ++c) {
-    const int first_row = static_cast<int>(row == column ? 2 * row + c : 2 * row);
-    const int* begin = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[2 * column + c];
-    const int* end = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[2 * column + c + 1];
-    result[c] =
-        static_cast<int>(std::lower_bound(begin, end, first_row) - hessian_.innerIndexPtr());
-  }
-  return result;
-}
-
-void TangentEnergy::add(const Block& block, bool diagonal, const Eigen::Matrix2d& values) {
-  double* stored = hessian_.valuePtr();
-  stored[block[0]] += values(0, 0);
-  stored[block[0] + 1] += values(1, 0);
-  if (diagonal) {
-    stored[block[1]] += values(1, 1);
+template <class Spring>
+double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
+                          Curvature curvature) {
+  const std::uint32_t begin = compiled.first[block], end = compiled.first[block + 1];
+  if (begin == end) return 0;
+  double value = 0;
+  if constexpr (std::is_same_v<decltype(kernelFor(Spring())), HessianKernel<Spring::kParticles>>) {
+    const Spring& first = compiled.springs.front();
+    const SpringFields<Spring::kParticles> fields = {
+        {first.particles.data(), sizeof(Spring)},
+        {&restOf(first), sizeof(Spring)},
+        {&first.stiffness, sizeof(Spring)},
+        {compiled.places.data(), sizeof(compiled.places[0])}};
+    const HessianArrays arrays = {
+        points_.front().data(), frames_.front().data(),  static_cast<std::uint32_t>(freeCount()),
+        gradient_.data(),       hessian_.front().data(), curvature == Curvature::definite};
+    std::vector<std::uint32_t> left_out(end - begin);
+    std::uint32_t count = 0;
+    value = kernelFor(first)(fields, begin, end, arrays, left_out.data(), count);
+    for (std::uint32_t i = 0; i < count; ++i) value += addOne(compiled, left_out[i], curvature);
   } else {
-    stored[block[1]] += values(0, 1);
-    stored[block[1] + 1] += values(1, 1);
+    for (std::uint32_t s = begin; s < end; ++s) value += addOne(compiled, s, curvature);
   }
+  return value;
 }
 
-const TangentEnergy::Matrix& TangentEnergy::hessian(Curvature curvature) {
-  if (hessian_.cols() != unknowns()) buildPattern();
-  std::fill_n(hessian_.valuePtr(), hessian_.nonZeros(), 0.);
-  auto next = blocks_.begin();
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    for (const Spring& spring : system_.springs<Spring>()) {
-      const auto c = tangentCondition(spring, System::points(spring, positions_),
-                                      framesOf(spring, frames_), curvature);
-      forEachBlock(spring, unknown_,
-                   [&](std::size_t i, std::size_t j, Eigen::Index row, Eigen::Index column) {
-                     add(*next++, row == column,
-                         spring.stiffness * (c.gradient[i] * c.gradient[j].transpose() +
-                                             c.value * c.hessian[i][j]));
-                   });
+template <class Spring>
+double TangentEnergy::addOne(const Compiled<Spring>& compiled, std::size_t s, Curvature curvature) {
+  constexpr std::size_t kEnds = Spring::kParticles;
+  const Spring& spring = compiled.springs[s];
+  std::array<Vector3, kEnds> points;
+  std::array<TangentFrame, kEnds> frames;
+  for (std::size_t i = 0; i < kEnds; ++i) {
+    points[i] = points_[spring.particles[i]];
+    frames[i] = frames_[spring.particles[i]];
+  }
+  const auto c = tangentCondition(spring, points, frames, curvature);
+  for (std::size_t i = 0; i < kEnds; ++i) {
+    if (spring.particles[i] >= freeCount()) continue;
+    gradient_.segment<2>(2 * spring.particles[i]) += spring.stiffness * c.value * c.gradient[i];
+    for (std::size_t j = 0; j < kEnds; ++j) {
+      const std::uint32_t place = compiled.places[s][kEnds * i + j];
+      if (place == HessianArrays::kNotStored) continue;
+      hessian_[place] += spring.stiffness *
+                         (c.gradient[i] * c.gradient[j].transpose() + c.value * c.hessian[i][j]);
+    }
+  }
+  return 0.5 * spring.stiffness * c.value * c.value;
+}
+
+void TangentEnergy::evaluate(Curvature curvature) {
+  gradient_.setZero();
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    for (std::uint32_t e = pattern_.graph.first[n]; e < pattern_.graph.first[n + 1]; ++e) {
+      hessian_[e].setZero();
     }
   });
-  if (inertia_.size() > 0) addInertiaHessian(curvature);
-  return hessian_;
+  const int threads = worthwhileThreads(freeCount(), threads_);
+  pattern_.order.far_apart.forEach(threads, [&](std::size_t block) {
+    double value = 0;
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      value += add(compiled_.get<Spring>(), block, curvature);
+    });
+    block_values_[block] = value;
+  });
+  value_ = pinned_value_;
+  for (const double value : block_values_) value_ += value;
+  if (inertia_.size() > 0) addInertia(curvature);
 }
 
 // The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
-void TangentEnergy::addInertiaHessian(Curvature curvature) {
-  for (std::size_t f = 0; f < free_.size(); ++f) {
-    const Eigen::Index i = free_[f];
-    const auto c = tangentCondition(AngleSpring(), {positions_.col(i), targets_.col(i)},
-                                    {frames_[i], frames_[i]}, curvature);
-    add(diagonal_blocks_[f], true,
-        inertia_[i] * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]));
+void TangentEnergy::addInertia(Curvature curvature) {
+  for (std::size_t n = 0; n < freeCount(); ++n) {
+    const double stiffness = inertia_[particles_[n]] / unit_;
+    const auto c = tangentCondition(AngleSpring(), {points_[n], targets_[n]},
+                                    {frames_[n], frames_[n]}, curvature);
+    value_ += 0.5 * stiffness * c.value * c.value;
+    gradient_.segment<2>(2 * n) += stiffness * c.value * c.gradient[0];
+    hessian_[pattern_.diagonal[n]] +=
+        stiffness * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]);
   }
 }
 
-Eigen::VectorXd TangentEnergy::particleStiffness() const {
-  constexpr double kLeastShare = 1e-12;
-  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(system_.particleCount());
-  forEachKind([&](auto kind) {
-    for (const auto& spring : system_.springs<typename decltype(kind)::type>()) {
-      const auto c = condition(spring, System::points(spring, positions_));
-      for (std::size_t j = 0; j < spring.particles.size(); ++j) {
-        stiffness[spring.particles[j]] += spring.stiffness * c.gradient[j].squaredNorm();
-      }
-    }
-  });
-  if (inertia_.size() > 0) stiffness += inertia_;
-  const double largest = stiffness.size() > 0 ? stiffness.maxCoeff() : 0;
-  return stiffness.cwiseMax(largest > 0 ? kLeastShare * largest : 1);
+double TangentEnergy::maxTorque() const {
+  double largest = 0;
+  for (std::size_t n = 0; n < freeCount(); ++n) {
+    largest = std::max(largest, gradient_.segment<2>(2 * n).squaredNorm());
+  }
+  return unit_ * std::sqrt(largest);
 }
 
-Eigen::VectorXd TangentEnergy::stiffnessScale() const {
-  const Eigen::VectorXd stiffness = particleStiffness();
-  Eigen::VectorXd scale(unknowns());
-  for (std::size_t f = 0; f < free_.size(); ++f) {
-    scale.segment<2>(2 * f).setConstant(stiffness[free_[f]]);
-  }
-  return scale;
-}
-
-Eigen::VectorXd TangentEnergy::mobility() const {
-  Eigen::VectorXd result = particleStiffness().cwiseInverse();
-  for (Eigen::Index i = 0; i < result.size(); ++i) {
-    if (system_.pinned(i)) result[i] = 0;
-  }
+Points TangentEnergy::positions() const {
+  Points result(3, particles_.size());
+  for (std::size_t n = 0; n < particles_.size(); ++n) result.col(particles_[n]) = points_[n];
   return result;
 }
 

@@ -1,80 +1,99 @@
 // The energy of a system as a function on the tangent planes of its free particles.
 #pragma once
 
-#include <Eigen/Sparse>
+#include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "block_matrix.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 
-/// Free particle f has the unknowns 2 f and 2 f + 1, its coordinates in a tangent frame of its own.
+/// Energies are in units of `unit()`, the largest stiffness, so that single precision holds every
+/// Hessian. Free particles come in an order of their own, in which those that are joined are close;
+/// free particle f has the unknowns 2 f and 2 f + 1, its coordinates in a tangent frame of its own.
 class TangentEnergy {
  public:
-  using Matrix = Eigen::SparseMatrix<double>;
+  using Hessian = Blocks<double, 2>;
 
-  TangentEnergy(const System& system, const Points& positions);
+  /// `positions`: for the order only. `inertia`: [J/rad^2], one a particle, on the squared distance
+  /// from a target; none in a relaxation.
+  TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia = {});
 
-  /// With inertia / 2 [J/rad^2] times the squared distance of each particle from a target added,
-  /// for a step of implicit integration. Targets and positions are to be set before use.
-  TangentEnergy(const System& system, Eigen::VectorXd inertia);
-  void setTargets(const Points& targets) { targets_ = targets; }
+  /// Whether the same springs, whatever their rest and stiffness, join the same particles in
+  /// `system`, and the same are pinned.
+  bool fits(const System& system) const;
+  /// Takes rest and stiffness from a system that fits.
+  void take(const System& system);
 
-  Eigen::Index unknowns() const { return 2 * static_cast<Eigen::Index>(free_.size()); }
-  const Points& positions() const { return positions_; }
-  double value() const { return value_; }                        ///< [J]
-  const Eigen::VectorXd& gradient() const { return gradient_; }  ///< [N m]
+  double unit() const { return unit_; }  ///< [J]
+  const BlockPattern& pattern() const { return pattern_; }
+  std::size_t freeCount() const { return pattern_.rows(); }
 
-  const Points& torques() const { return workspace_.torques; }  ///< of each particle [N m]
+  /// Puts the particles somewhere; `evaluate` is to follow.
+  void place(const Points& positions);
+  void setTargets(const Points& targets);
+
+  /// Moves the free particles by tangent vectors [rad] and back onto the sphere along their
+  /// radius, frames along with them; `evaluate` is to follow.
+  void move(const Eigen::VectorXd& step);
+  /// Keeps the places of the particles, to go back to.
+  void mark();
+  void goBack();
+
+  /// Value, gradient and Hessian where the particles are.
+  void evaluate(Curvature curvature);
+
+  double value() const { return value_; }
+  const Eigen::VectorXd& gradient() const { return gradient_; }
+  const Hessian& hessian() const { return hessian_; }
+  const std::vector<TangentFrame>& frames() const { return frames_; }
+
+  /// What the quadratic model of the last evaluation promises of a step.
+  double expectedDrop(const Eigen::VectorXd& step) const;
 
   /// Largest gradient of a free particle, which is its torque [N m].
   double maxTorque() const;
 
-  /// Positions after the free particles have gone along great circles by the tangent vectors
-  /// `step` [rad].
-  Points moved(const Eigen::VectorXd& step) const;
-
-  /// Takes new positions; value and gradient follow.
-  void moveTo(const Points& positions);
-
-  /// Lower triangle of the Hessian at the positions; valid until the next call.
-  const Matrix& hessian(Curvature curvature);
-
-  /// For each particle the stiffness of the springs at it, sum of stiffness |gradient|^2, as a
-  /// scale for steps; never 0.
-  Eigen::VectorXd particleStiffness() const;
-
-  /// The same for each unknown.
-  Eigen::VectorXd stiffnessScale() const;
-
-  /// 1 / stiffness of each particle; 0 where pinned.
-  Eigen::VectorXd mobility() const;
+  /// Of all particles, in the order of their ids.
+  Points positions() const;
 
  private:
-  /// Where the columns of a 2 x 2 block begin among the matrix's values; -1: not stored.
-  using Block = std::array<int, 2>;
+  template <class Spring>
+  struct Compiled {
+    std::vector<Spring> springs;         ///< whose particles are numbers in the order here
+    std::vector<std::uint32_t> sources;  ///< their indices in the system
+    std::vector<std::array<std::uint32_t, Spring::kParticles * Spring::kParticles>> places;
+    /// Of each block of the pattern, and the end; springs after that join only pinned particles.
+    std::vector<std::uint32_t> first;
+  };
 
-  void findFree();
-  void addInertia();
-  void addInertiaHessian(Curvature curvature);
-  void buildPattern();
-  Block block(Eigen::Index row, Eigen::Index column) const;
-  void add(const Block& block, bool diagonal, const Eigen::Matrix2d& values);
+  void number(const System& system, const Points& positions);
+  Graph freeGraph(const System& system, std::size_t free) const;
+  template <class Spring>
+  void compile(const System& system);
+  template <class Spring>
+  double add(const Compiled<Spring>& compiled, std::size_t block, Curvature curvature);
+  template <class Spring>
+  double addOne(const Compiled<Spring>& compiled, std::size_t spring, Curvature curvature);
+  void addInertia(Curvature curvature);
 
-  const System& system_;
-  std::vector<Eigen::Index> free_;     // particle of each free one
-  std::vector<Eigen::Index> unknown_;  // free index of each particle, or -1
-  Eigen::VectorXd inertia_;            // none in a relaxation
-  Points targets_;
-  Points positions_;
-  std::vector<TangentFrame> frames_;
-  System::Workspace workspace_;
-  double value_ = 0;
+  int threads_;
+  BlockPattern pattern_;
+  std::vector<std::uint32_t> particles_;  // of each number; free ones come first
+  std::vector<std::uint32_t> numbers_;    // of each particle
+  PerKind<Compiled> compiled_;
+  double unit_ = 1;
+  Eigen::VectorXd inertia_;
+  std::vector<Vector3> targets_;
+  std::vector<Vector3> points_, marked_points_;
+  std::vector<TangentFrame> frames_, marked_frames_;
+  double value_ = 0, pinned_value_ = 0;
   Eigen::VectorXd gradient_;
-  Matrix hessian_;
-  // Of the diagonal, and of each pair of ends of each spring, in the order of use.
-  std::vector<Block> diagonal_blocks_, blocks_;
+  Hessian hessian_;
+  std::vector<double> block_values_;
 };
 
 }  // namespace spherical_springs::core

@@ -1,0 +1,88 @@
+#include "alignment.h"
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "parallel.h"
+
+namespace spherical_springs::core {
+namespace {
+
+/// For each particle one of those that springs join it with, the same for all of a group.
+std::vector<std::uint32_t> groupsOf(const System& system) {
+  std::vector<std::uint32_t> parent(system.particleCount());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  forEachKind([&](auto kind) {
+    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+      const std::uint32_t first = root(spring.particles[0]);
+      for (std::size_t j = 1; j < spring.particles.size(); ++j) {
+        parent[root(spring.particles[j])] = first;
+      }
+    }
+  });
+  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
+  return parent;
+}
+
+struct Group {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // sum of after before^T
+  Vector3 pin = Vector3::Zero();
+  bool fixed = false;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+
+  void addPin(const Vector3& place) {
+    if (pin.isZero(0)) pin = place;
+    fixed = fixed || !crossOfUnits(pin, place).isZero(0);
+  }
+
+  void findTurn() {
+    if (fixed) return;
+    if (!pin.isZero(0)) {
+      turnAboutPin();
+      return;
+    }
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d v = svd.matrixV();
+    if ((v * svd.matrixU().transpose()).determinant() < 0) v.col(2) *= -1;
+    turn = v * svd.matrixU().transpose();
+  }
+
+ private:
+  /// The angle that brings the traces of after and before across the pin together.
+  void turnAboutPin() {
+    const double along = pin.dot(covariance * pin);
+    const Vector3 twist(covariance(1, 2) - covariance(2, 1), covariance(2, 0) - covariance(0, 2),
+                        covariance(0, 1) - covariance(1, 0));
+    const double angle = std::atan2(pin.dot(twist), covariance.trace() - along);
+    turn = Eigen::AngleAxisd(angle, pin).toRotationMatrix();
+  }
+};
+
+}  // namespace
+
+Points aligned(const System& system, const Points& before, Points after) {
+  const auto group_of = groupsOf(system);
+  std::vector<Group> groups(group_of.size());
+  for (std::size_t i = 0; i < group_of.size(); ++i) {
+    Group& group = groups[group_of[i]];
+    group.covariance += after.col(i) * before.col(i).transpose();
+    if (system.pinned(i)) group.addPin(after.col(i));
+  }
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (group_of[i] == i) groups[i].findTurn();
+  }
+  parallelFor(after.cols(), system.threads(), [&](std::ptrdiff_t i) {
+    const Vector3 p = groups[group_of[i]].turn * after.col(i);
+    if (!system.pinned(i)) after.col(i) = p * (1.5 - 0.5 * p.squaredNorm());
+  });
+  return after;
+}
+
+}  // namespace spherical_springs::core

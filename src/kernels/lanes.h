@@ -1,0 +1,94 @@
+// Arithmetic on several numbers at a time. To be included once in each file that is compiled for a
+// level of instruction set of its own; all is local to that file, so that no other may come to call
+// what its processor cannot do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace {
+
+constexpr int kLanes = 8;
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+using LaneMask = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
+
+inline Lanes squareRoot(const Lanes& x) {
+  Lanes result;
+  for (int k = 0; k < kLanes; ++k) result[k] = __builtin_sqrt(x[k]);
+  return result;
+}
+
+inline bool any(const LaneMask& mask) {
+  std::int64_t found = 0;
+  for (int k = 0; k < kLanes; ++k) found |= mask[k];
+  return found != 0;
+}
+
+inline double sum(const Lanes& x) {
+  double total = 0;
+  for (int k = 0; k < kLanes; ++k) total += x[k];
+  return total;
+}
+
+/// Horner's scheme; coefficients from the constant on.
+template <std::size_t N>
+inline Lanes polynomial(const double (&coefficients)[N], const Lanes& x) {
+  Lanes result = coefficients[N - 1] - Lanes{};
+  for (std::size_t i = N - 1; i-- > 0;) result = coefficients[i] + x * result;
+  return result;
+}
+
+struct Lanes3 {
+  Lanes x, y, z;
+};
+
+inline Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Lanes3 operator*(const Lanes& s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Lanes3 operator*(double s, const Lanes3& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// asin(sqrt(h)) / sqrt(h) for h up to 1/4, to 2e-17; a Chebyshev interpolant.
+inline Lanes arcsineRatio(const Lanes& h) {
+  constexpr double kCoefficients[] = {1.0,
+                                      0.16666666666664942,
+                                      0.07500000000385201,
+                                      0.044642856805998936,
+                                      0.03038195969768514,
+                                      0.022371749733164054,
+                                      0.01735977964134998,
+                                      0.01388484282640208,
+                                      0.012170138592391726,
+                                      0.0065293020047365695,
+                                      0.019513468251252167,
+                                      -0.016187392271599134,
+                                      0.03187962140081284};
+  return polynomial(kCoefficients, h);
+}
+
+/// atan(u) / u for squares of u up to 1/4, to 4e-18; a Chebyshev interpolant.
+inline Lanes arctangentRatio(const Lanes& square) {
+  constexpr double kCoefficients[] = {1.0,
+                                      -0.3333333333333278,
+                                      0.19999999999875542,
+                                      -0.14285714274692063,
+                                      0.11111110602305971,
+                                      -0.09090895058092312,
+                                      0.07692057989976618,
+                                      -0.06663667844183857,
+                                      0.05857435765165694,
+                                      -0.05118531938647954,
+                                      0.041775850326747944,
+                                      -0.027302779603074177,
+                                      0.010030841489968486};
+  return polynomial(kCoefficients, square);
+}
+
+}  // namespace
