@@ -48,8 +48,13 @@ Points displaced(const System& system, Points positions, double share, unsigned 
   return positions;
 }
 
-/// The first spring whose condition is nearly undefined at `positions`, by its place in the order
-/// of ids; empty when there is none.
+/// A spring by its place in the order of ids.
+template <class Spring>
+std::string itemName(std::size_t index) {
+  return std::string(Spring::kTable) + "[" + std::to_string(index) + "]";
+}
+
+/// The first spring whose condition is nearly undefined at `positions`; empty when there is none.
 std::string nearlyUndefinedSpring(const System& system, const Points& positions) {
   std::string name;
   forEachKind([&](auto kind) {
@@ -57,8 +62,7 @@ std::string nearlyUndefinedSpring(const System& system, const Points& positions)
     const auto& springs = system.springs<Spring>();
     for (std::size_t i = 0; i < springs.size() && name.empty(); ++i) {
       if (nearlyUndefined(springs[i], System::points(springs[i], positions))) {
-        name =
-            std::string(Spring::kTable) + "[" + std::to_string(i) + "], with antipodal vertices,";
+        name = itemName<Spring>(i) + ", with antipodal vertices,";
       }
     }
   });
@@ -75,8 +79,13 @@ class Relaxation {
         options_(options),
         tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
         start_(positions),
+        guard_(system),
         newton_(newton) {
-    if (options.method == RelaxationMethod::dynamics) fire_ = std::make_unique<Fire>(system);
+    OrientationGuard* const guard = options.keep_orientation ? &guard_ : nullptr;
+    newton_.keepOrientation(guard);
+    if (options.method == RelaxationMethod::dynamics) {
+      fire_ = std::make_unique<Fire>(system, guard);
+    }
     descent_ = fire_ ? static_cast<Descent*>(fire_.get()) : &newton_;
     newton_.aimAt(tolerance_);
     descent_->place(positions);
@@ -111,6 +120,7 @@ class Relaxation {
         continue;
       }
       if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
+      if (options_.keep_orientation) break;
       descent_->place(displaced(system_, descent_->positions(),
                                 std::min(0.1, 1e-3 * std::pow(10, attempt)), attempt));
     }
@@ -178,7 +188,9 @@ class Relaxation {
     }
     const std::string spring = nearlyUndefinedSpring(system_, result_.positions);
     std::string reason = "rounding ends it";
-    if (!spring.empty()) {
+    if (options_.keep_orientation && guard_.tightest()) {
+      reason = itemName<SolidAngleSpring>(*guard_.tightest()) + " would fold, which ends it";
+    } else if (!spring.empty()) {
       reason = spring + " has no area, which ends it";
     } else if (!atRoundingFloor()) {
       reason = "a long series of them gained next to nothing, which ends it";
@@ -193,6 +205,7 @@ class Relaxation {
   const double tolerance_;
   const Clock::time_point begin_ = Clock::now();
   const Points& start_;
+  OrientationGuard guard_;
   Newton& newton_;
   std::unique_ptr<Fire> fire_;
   Descent* descent_;

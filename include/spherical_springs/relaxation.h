@@ -38,6 +38,9 @@ struct RelaxationOptions {
   RelaxationMethod method = RelaxationMethod::newton;
   double tolerance = 0;  ///< largest torque left on a free particle [N m]; 0: the default
   double max_time = 0;   ///< wall [s]; 0: no limit
+  /// Whether steps are cut before a triangle of a solid-angle spring would fold: one that is
+  /// oriented as its rest angle asks, or that asks for none.
+  bool keep_orientation = false;
   /// Called after every iteration; returning false ends the relaxation.
   std::function<bool(const RelaxationProgress&)> go_on = [](const auto&) { return true; };
 };

@@ -29,11 +29,38 @@ double Fire::maxTorque() const {
   return positions_.cols() > 0 ? workspace_.torques.colwise().norm().maxCoeff() : 0;
 }
 
+void Fire::stop() {
+  constexpr double kCut = 0.5;
+  velocities_.setZero();
+  time_step_ *= downhill_ > 0 ? kCut : 1;
+  mixing_ = kFirstMixing;
+  downhill_ = 0;
+}
+
+/// Along great circles by the velocities, as far as the guard allows.
+void Fire::move() {
+  Points moves(3, positions_.cols());
+  parallelFor(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
+    const Vector3 velocity = velocities_.col(i);
+    moves.col(i) = time_step_ * velocity.cross(Vector3(positions_.col(i)));
+  });
+  double share = 1;
+  if (guard_) {
+    Eigen::VectorXd hold = Eigen::VectorXd::Zero(positions_.cols());
+    share = guard_->allowedShare(positions_, moves, hold);
+  }
+  parallelFor(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
+    positions_.col(i) = (positions_.col(i) + share * moves.col(i)).normalized();
+    velocities_.col(i) -= positions_.col(i).dot(velocities_.col(i)) * positions_.col(i);
+  });
+  if (share < 1) stop();
+}
+
 bool Fire::iterate() {
   constexpr int kInertiaLasts = 50;
   constexpr int kPatience = 20000;  // iterations without a smaller torque
   constexpr int kDelay = 5;
-  constexpr double kGrowth = 1.1, kCut = 0.5, kMixingDecay = 0.99;
+  constexpr double kGrowth = 1.1, kMixingDecay = 0.99;
   constexpr double kLongestStep = 10 * kFirstStep;
   if (age_++ % kInertiaLasts == 0) {
     mobility_ = particleStiffness(system_, positions_).cwiseInverse();
@@ -50,16 +77,10 @@ bool Fire::iterate() {
       mixing_ *= kMixingDecay;
     }
   } else {
-    velocities_.setZero();
-    time_step_ *= downhill_ > 0 ? kCut : 1;
-    mixing_ = kFirstMixing;
-    downhill_ = 0;
+    stop();
   }
   velocities_ += time_step_ * acceleration;
-  parallelFor(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
-    positions_.col(i) = rotated(positions_.col(i), time_step_ * velocities_.col(i));
-    velocities_.col(i) -= positions_.col(i).dot(velocities_.col(i)) * positions_.col(i);
-  });
+  move();
   evaluate();
 
   const double torque = workspace_.torques.norm();

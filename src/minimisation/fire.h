@@ -1,6 +1,7 @@
 #pragma once
 
 #include "descent.h"
+#include "orientation_guard.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
@@ -11,8 +12,8 @@ namespace spherical_springs::core {
 /// of time.
 class Fire : public Descent {
  public:
-  /// `system` must live longer.
-  explicit Fire(const System& system) : system_(system) {}
+  /// Steps are cut before what `guard` forbids; null: nothing is forbidden. Both must live longer.
+  Fire(const System& system, OrientationGuard* guard) : system_(system), guard_(guard) {}
   void place(const Points& positions) override;
   bool iterate() override;
   Points positions() const override { return positions_; }
@@ -23,8 +24,11 @@ class Fire : public Descent {
   static constexpr double kFirstStep = 0.1, kFirstMixing = 0.1;
 
   void evaluate();
+  void stop();
+  void move();
 
   const System& system_;
+  OrientationGuard* guard_;
   Points positions_;
   System::Workspace workspace_;
   double value_ = 0;

@@ -36,6 +36,7 @@ void Newton::place(const Points& positions) {
   shift_ = kLeastShift;
   radius_ = kInfinity;
   scale_.setZero(energy_.freeCount());
+  hold_.setZero(energy_.freeCount());
   iterations_ = calm_iterations_ = 0;
   evaluate();
 }
@@ -49,7 +50,8 @@ void Newton::evaluate() {
       const auto& block = energy_.hessian()[energy_.pattern().diagonal[i]];
       scale_[i] = std::max(scale_[i], 0.5 * block.trace());
     }
-    if (scale_.size() > 0) scale_ = scale_.cwiseMax(kLeastShare * scale_.maxCoeff());
+    const double largest = scale_.size() > 0 ? scale_.maxCoeff() : 0;
+    scale_ = scale_.cwiseMax(largest > 0 ? kLeastShare * largest : 1);
   }
   if (model_ == Model::indefinite) definite_ = energy_.hessian();
   if (model_ != Model::definite) energy_.evaluate(Curvature::exact);
@@ -57,7 +59,8 @@ void Newton::evaluate() {
 
 ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) {
   const auto* definite = model_ == Model::indefinite ? &definite_ : nullptr;
-  return solver_.minimum(energy_, definite, shift_ * scale_, gradient, tolerance);
+  const Eigen::VectorXd shifts = scale_.cwiseProduct((hold_.array() + shift_).matrix());
+  return solver_.minimum(energy_, definite, shifts, gradient, tolerance);
 }
 
 /// How much of the gradient a step may leave: little where earlier steps have left little.
@@ -88,8 +91,21 @@ void Newton::goDownward(ModelMinimum& minimum) const {
   minimum.step += length * minimum.downward;
 }
 
-void Newton::keepInside(Eigen::VectorXd& step) const {
+void Newton::keepInside(Eigen::VectorXd& step) {
   step *= std::min({1., radius_ / scaledLength(step), kLongestMove / longestMove(step)});
+  if (guard_) step *= allowedShare(step);
+}
+
+/// What the guard allows of a step. Particles that it holds back are made to resist, so that the
+/// next steps go round them.
+double Newton::allowedShare(const Eigen::VectorXd& step) {
+  constexpr double kEase = 0.5;
+  Eigen::VectorXd hold = Eigen::VectorXd::Zero(energy_.positions().cols());
+  const double share = guard_->allowedShare(energy_.positions(), energy_.moves(step), hold);
+  for (Eigen::Index i = 0; i < hold_.size(); ++i) {
+    hold_[i] = std::max(kEase * hold_[i], hold[energy_.particle(i)]);
+  }
+  return share;
 }
 
 bool Newton::iterate() {
@@ -202,6 +218,7 @@ bool Newton::leaveSaddle() {
   energy_.mark();
   for (double length = 0.1; length > 1e-9; length /= 4) {
     for (const double sign : {1., -1.}) {
+      if (guard_ && allowedShare(sign * length * direction) < 1) continue;
       energy_.move(sign * length * direction);
       evaluate();
       if (energy_.value() < value) {

@@ -2,6 +2,7 @@
 
 #include "descent.h"
 #include "model_solver.h"
+#include "orientation_guard.h"
 #include "tangent_energy.h"
 
 namespace spherical_springs::core {
@@ -20,6 +21,9 @@ class Newton : public Descent {
 
   /// The torque [N m] that is wanted, so that no step goes further for nothing.
   void aimAt(double torque) { wanted_torque_ = torque; }
+
+  /// Steps are cut before what `guard` forbids; null: nothing is forbidden.
+  void keepOrientation(OrientationGuard* guard) { guard_ = guard; }
 
   void place(const Points& positions) override;
   bool iterate() override;
@@ -43,7 +47,8 @@ class Newton : public Descent {
   double tolerance() const;
   double scaledLength(const Eigen::VectorXd& step) const;
   void goDownward(ModelMinimum& minimum) const;
-  void keepInside(Eigen::VectorXd& step) const;
+  void keepInside(Eigen::VectorXd& step);
+  double allowedShare(const Eigen::VectorXd& step);
   Trial tryStep(const ModelMinimum& minimum);
   void correct();
   bool creeps();
@@ -54,9 +59,11 @@ class Newton : public Descent {
   TangentEnergy::Hessian definite_;  // beside the exact one, while the model is indefinite
   Model model_ = Model::definite;
   Eigen::VectorXd scale_;  // stiffness at each free particle, of which the shift is a share
+  Eigen::VectorXd hold_;   // shares of the scale that the guard has added
   double shift_ = 0;
   double radius_ = 0;  // that steps stay inside, in their scaled length
   double wanted_torque_ = 0;
+  OrientationGuard* guard_ = nullptr;
   int iterations_ = 0;
   int calm_iterations_ = 0;  // since negative curvature
   double earlier_gradient_ = 0;

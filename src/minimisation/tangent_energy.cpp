@@ -304,4 +304,12 @@ Points TangentEnergy::positions() const {
   return result;
 }
 
+Points TangentEnergy::moves(const Eigen::VectorXd& step) const {
+  Points result = Points::Zero(3, static_cast<Eigen::Index>(particles_.size()));
+  for (std::size_t n = 0; n < freeCount(); ++n) {
+    result.col(particles_[n]) = frames_[n] * step.segment<2>(2 * n);
+  }
+  return result;
+}
+
 }  // namespace spherical_springs::core

@@ -59,6 +59,10 @@ class TangentEnergy {
 
   /// Of all particles, in the order of their ids.
   Points positions() const;
+  /// The tangent vectors by which a step moves the particles, in the same order.
+  Points moves(const Eigen::VectorXd& step) const;
+  /// Particle of each free one.
+  std::uint32_t particle(std::size_t free) const { return particles_[free]; }
 
  private:
   template <class Spring>
