@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "marker_publisher.h"
 #include "parameters.h"
 #include "publisher.h"
 #include "scene_directory.h"
@@ -35,6 +36,7 @@ void run() {
   loadFirstScene(parameters, directory, runner);
 
   Publisher publisher(node, runner, parameters);
+  const MarkerPublisher markers(node, runner, parameters);
   const Services services(node, runner, publisher, directory);
   const Stepper stepper(node, runner, parameters);
   ros::AsyncSpinner spinner(kThreads);

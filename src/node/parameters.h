@@ -14,11 +14,11 @@ struct Parameters {
 
   double time_step = 0.001;                 ///< [s]
   std::string integrator = "verlet";        ///< as core::integrationMethod has it
-  double publish_rate = 30;                 ///< of poses and energies [Hz]
+  double publish_rate = 30;                 ///< of poses, energies and markers [Hz]
   double real_time_factor = 1;              ///< simulated time / time of the clock
   bool running = true;                      ///< whether time goes on from the start
-  std::string frame_id = "map";             ///< of poses and energies
-  double radius = 1;                        ///< of the published poses [m]
+  std::string frame_id = "map";             ///< of poses, energies and markers
+  double radius = 1;                        ///< of the published poses and markers [m]
   std::string scene;                        ///< a file to load at start; empty: none
   int threads = 0;                          ///< 0: all cores
   std::string spring_damping = "relative";  ///< "relative", "own"

@@ -11,6 +11,7 @@ namespace spherical_springs::core {
 /// Angle spring (report, section 3.1): C = angle between two particles - rest_angle.
 struct AngleSpring {
   static constexpr std::size_t kParticles = 2;
+  static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
   static constexpr const char* kTable = "angle_springs";
 
   std::array<std::uint32_t, kParticles> particles{};
@@ -18,6 +19,8 @@ struct AngleSpring {
   double stiffness = 0;   ///< [J/rad^2]
   double damping = 0;     ///< [N m s/rad]
   bool at_rest = false;   ///< true: rest_angle is ignored and the present angle is taken
+
+  double restValue() const { return rest_angle; }
 
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {

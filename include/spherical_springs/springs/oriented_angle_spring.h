@@ -13,6 +13,7 @@ namespace spherical_springs::core {
 /// of width `width` in the triple product of the three particles.
 struct OrientedAngleSpring {
   static constexpr std::size_t kParticles = 3;
+  static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
   static constexpr const char* kTable = "oriented_angle_springs";
 
   std::array<std::uint32_t, kParticles> particles{};
@@ -21,6 +22,8 @@ struct OrientedAngleSpring {
   double damping = 0;     ///< [N m s/rad]
   double width = 0;       ///< of the change of sign, in units of the triple product; 0: the default
   bool at_rest = false;   ///< true: rest_angle is ignored and the present signed angle is taken
+
+  double restValue() const { return rest_angle; }
 
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {

@@ -14,6 +14,7 @@ namespace spherical_springs::core {
 /// says clockwise, which needs left-handed axes).
 struct SolidAngleSpring {
   static constexpr std::size_t kParticles = 3;
+  static constexpr std::size_t kCorners = 3;  ///< of a triangle
   static constexpr const char* kTable = "solid_angle_springs";
 
   std::array<std::uint32_t, kParticles> particles{};
@@ -21,6 +22,8 @@ struct SolidAngleSpring {
   double stiffness = 0;         ///< [J/sr^2]
   double damping = 0;           ///< as for the other springs, with C in [sr]
   bool at_rest = false;         ///< true: rest_solid_angle is ignored and the present one is taken
+
+  double restValue() const { return rest_solid_angle; }
 
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {
