@@ -17,6 +17,7 @@ using visualization_msgs::Marker;
 
 // Distances from the centre, in radii; between them is room for the depth of chords.
 constexpr double kSphere = 0.995, kTriangles = 0.998, kArcs = 1;
+constexpr double kShade = 0.75;  // of triangles, from which arcs and particles then stand out
 
 std_msgs::ColorRGBA colour(double red, double green, double blue) {
   std_msgs::ColorRGBA result;
@@ -91,7 +92,7 @@ double longestPiece(const core::System& system, const core::Points& positions) {
 
 /// `append(points, longest, pieces)` appends the pieces of one spring's shape.
 template <std::size_t Corners, class Append>
-void fill(const core::System& system, const core::Points& positions, double radius,
+void fill(const core::System& system, const core::Points& positions, double radius, double shade,
           const Append& append, Marker& marker) {
   const double longest = longestPiece<Corners>(system, positions);
   std::vector<core::Vector3> pieces;
@@ -99,16 +100,16 @@ void fill(const core::System& system, const core::Points& positions, double radi
     pieces.clear();
     append(points, longest, pieces);
     for (const core::Vector3& p : pieces) marker.points.push_back(toPoint(radius * p));
-    marker.colors.resize(marker.points.size(), strainColour(core::strain(spring, points)));
+    marker.colors.resize(marker.points.size(), strainColour(core::strain(spring, points), shade));
   });
 }
 
 }  // namespace
 
-std_msgs::ColorRGBA strainColour(double strain) {
+std_msgs::ColorRGBA strainColour(double strain, double shade) {
   const core::Vector3 smaller(0.2, 0.55, 1), at_rest(1, 1, 1), larger(1, 0.55, 0);
   const double share = std::min(1., std::abs(strain));
-  const core::Vector3 c = at_rest + share * ((strain < 0 ? smaller : larger) - at_rest);
+  const core::Vector3 c = shade * (at_rest + share * ((strain < 0 ? smaller : larger) - at_rest));
   return colour(c.x(), c.y(), c.z());
 }
 
@@ -144,7 +145,7 @@ Marker arcsMarker(const core::System& system, const core::Points& positions, dou
   const auto append = [](const auto& p, double longest, std::vector<core::Vector3>& pieces) {
     core::appendArc(p[0], p[1], longest, pieces);
   };
-  fill<2>(system, positions, kArcs * radius, append, result);
+  fill<2>(system, positions, kArcs * radius, 1, append, result);
   return orNothing(std::move(result));
 }
 
@@ -154,7 +155,7 @@ Marker trianglesMarker(const core::System& system, const core::Points& positions
   const auto append = [](const auto& p, double longest, std::vector<core::Vector3>& pieces) {
     core::appendTriangle(p[0], p[1], p[2], longest, pieces);
   };
-  fill<3>(system, positions, kTriangles * radius, append, result);
+  fill<3>(system, positions, kTriangles * radius, kShade, append, result);
   return orNothing(std::move(result));
 }
 

@@ -9,8 +9,8 @@
 namespace spherical_springs {
 
 /// Blue at -1 (shorter or smaller than at rest), white at 0, orange at 1 (longer or larger); linear
-/// between, and told apart by the colour-blind.
-std_msgs::ColorRGBA strainColour(double strain);
+/// between, and told apart by the colour-blind. `shade`: from 0, black, to 1, the full colour.
+std_msgs::ColorRGBA strainColour(double strain, double shade = 1);
 
 /// The sphere itself, drawn a little smaller than `radius` [m], so that what lies on it shows.
 visualization_msgs::Marker sphereMarker(double radius);
@@ -26,7 +26,8 @@ visualization_msgs::Marker particlesMarker(const core::System& system,
 visualization_msgs::Marker arcsMarker(const core::System& system, const core::Points& positions,
                                       double radius);
 
-/// Springs whose shape is a triangle, likewise; a little below the arcs.
+/// Springs whose shape is a triangle, likewise; a little below the arcs,
+/// and a shade darker.
 visualization_msgs::Marker trianglesMarker(const core::System& system,
                                            const core::Points& positions, double radius);
 

@@ -115,9 +115,9 @@ TEST(Markers, TrianglesLieBetweenTheSphereAndTheArcs) {
 }
 
 TEST(Markers, SpringsHaveTheColourOfTheirStrain) {
-  const auto expected = strainColour(0.5);
-  for (const Marker& marker : {drawn(octant(), arcsMarker), drawn(octant(), trianglesMarker)}) {
-    for (const auto& colour : marker.colors) {
+  for (const bool arcs : {true, false}) {
+    const auto expected = strainColour(0.5, arcs ? 1 : 0.75);
+    for (const auto& colour : drawn(octant(), arcs ? arcsMarker : trianglesMarker).colors) {
       EXPECT_NEAR(colour.r, expected.r, 1e-6);
       EXPECT_NEAR(colour.g, expected.g, 1e-6);
       EXPECT_NEAR(colour.b, expected.b, 1e-6);
