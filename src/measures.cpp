@@ -133,16 +133,25 @@ double localError(const std::shared_ptr<const System>& system, IntegrationMethod
 
 namespace {
 
-std::string warningOf(const Measures& measures, IntegrationMethod method, double time_step,
-                      const State& state) {
-  constexpr double kBlownUp = 0.1;  // of the energy
+/// Whether the energy has gone astray, by more than rounding can do to springs that are all but at
+/// rest.
+bool blownUp(const Measures& measures, IntegrationMethod method, const System& system,
+             const Energies& now) {
+  constexpr double kAstray = 0.1;      // of the energy
+  constexpr double kRounding = 1e-20;  // [rad^2] or [sr^2]
+  if (!std::isfinite(now.total())) return true;
+  const bool takes_energy_out = method == IntegrationMethod::implicit_euler;
+  return !takes_energy_out && measures.energy_error > kAstray &&
+         now.total() > kRounding * system.largestStiffness();
+}
+
+std::string warningOf(const Measures& measures, double time_step, const State& state) {
   if (state.unconverged_steps > 0) {
     return std::to_string(state.unconverged_steps) +
            " steps of implicit_euler ended before their minimum, where rounding or a triangle "
            "without area stopped them: they are sound, but less exact";
   }
-  const bool takes_energy_out = method == IntegrationMethod::implicit_euler;
-  if (measures.energy_error > kBlownUp && !takes_energy_out) {
+  if (measures.blown_up) {
     return "the energy is off by " + toText(std::round(100 * measures.energy_error)) +
            " % since the account began: the time step of " + toText(time_step) +
            " s is too long for this scene (stable here: " + toText(measures.stable_time_step) +
@@ -162,11 +171,13 @@ Measures measure(const std::shared_ptr<const System>& system, IntegrationMethod 
   Measures result;
   result.stable_time_step = stableTimeStep(*system, method, state.positions);
   result.local_error = localError(system, method, time_step, state);
-  result.energy_error = account.energyError(energies(*system, state));
+  const Energies now = energies(*system, state);
+  result.energy_error = account.energyError(now);
   result.angular_momentum_error = account.angularMomentumError(*system, state);
   result.norm_error = normError(state);
   result.max_torque = maxTorque(*system, state);
-  result.warning = warningOf(result, method, time_step, state);
+  result.blown_up = blownUp(result, method, *system, now);
+  result.warning = warningOf(result, time_step, state);
   return result;
 }
 

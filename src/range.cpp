@@ -19,8 +19,10 @@ std::string toText(double value) {
 
 void requireInside(const Range& range, double value, const char* field) {
   if (range.contains(value)) return;
-  throw std::invalid_argument(std::string(field) + " is " + toText(value) +
-                              "; allowed: " + range.allowed);
+  const std::string fault =
+      std::string(field) + " is " + toText(value) + "; allowed: " + range.allowed;
+  if (!std::isfinite(value)) throw NonFinite(fault);
+  throw std::invalid_argument(fault);
 }
 
 }  // namespace spherical_springs::core

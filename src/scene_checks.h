@@ -30,6 +30,12 @@ inline std::string toText(const Vector3& v) {
   return "(" + toText(v.x()) + ", " + toText(v.y()) + ", " + toText(v.z()) + ")";
 }
 
+[[noreturn]] inline void refuse(const std::string& field, const Vector3& value,
+                                const std::string& allowed) {
+  if (!value.allFinite()) throw NonFinite(field + " is " + toText(value) + "; allowed: " + allowed);
+  refuse(field, toText(value), allowed);
+}
+
 template <class Item>
 void checkFields(const Item& item) {
   Item::visitFields(item, [](const char* field, double value, const Range& range) {
@@ -43,6 +49,8 @@ void checkEach(std::vector<Item>& items, const char* list, Check&& check) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     try {
       check(items[i]);
+    } catch (const NonFinite& fault) {
+      throw NonFinite(itemName(list, i) + "." + fault.what());
     } catch (const std::invalid_argument& fault) {
       throw std::invalid_argument(itemName(list, i) + "." + fault.what());
     }
@@ -64,10 +72,10 @@ inline Vector3 tangentPart(const Vector3& position, const Vector3& angular_veloc
 
 inline void checkParticle(Particle& particle) {
   if (!particle.position.allFinite() || particle.position.isZero(0)) {
-    refuse("position", toText(particle.position), "any finite non-zero vector");
+    refuse("position", particle.position, "any finite non-zero vector");
   }
   if (!(particle.angular_velocity.array().abs() <= kFastest).all()) {
-    refuse("angular_velocity", toText(particle.angular_velocity), "finite, up to 1e100 [rad/s]");
+    refuse("angular_velocity", particle.angular_velocity, "finite, up to 1e100 [rad/s]");
   }
   if (particle.mass == 0) particle.mass = 1;
   checkFields(particle);

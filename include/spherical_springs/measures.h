@@ -48,6 +48,7 @@ struct Measures {
   double angular_momentum_error = 0;
   double norm_error = 0;  ///< max | |p| - 1 |
   double max_torque = 0;  ///< on a particle that is not pinned [N m]
+  bool blown_up = false;  ///< the energy is far from what it was when the account began
   std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
 };
 

@@ -1,9 +1,15 @@
 // Ranges of allowed values, and the one way in which a value outside is refused.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 namespace spherical_springs::core {
+
+/// A number that is not finite where a finite one is needed.
+class NonFinite : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
 
 struct Range {
   double low, high;
@@ -24,7 +30,8 @@ constexpr double kFastest = 1e100;
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
 std::string toText(double value);
 
-/// @throw std::invalid_argument "`field` is `value`; allowed: ..." when `value` is outside.
+/// @throw std::invalid_argument "`field` is `value`; allowed: ..." when `value` is outside; a
+/// NonFinite when it is not finite.
 void requireInside(const Range& range, double value, const char* field);
 
 }  // namespace spherical_springs::core

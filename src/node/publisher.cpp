@@ -20,7 +20,11 @@ const char* nameOf(const core::Runner::Snapshot& snapshot) {
 // Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
 // read while the clock stands still.
 Publisher::Publisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters)
-    : parameters_(parameters), runner_(runner), last_status_(ros::WallTime::now()) {
+    : parameters_(parameters),
+      runner_(runner),
+      diagnostics_(node),
+      last_status_(ros::WallTime::now()),
+      lag_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { statusChanged(); };
   poses_ = node.advertise<geometry_msgs::PoseArray>("poses", 1);
@@ -75,10 +79,12 @@ void Publisher::publishSample() {
 
 void Publisher::publishStatusIfDue() {
   constexpr double kPeriod = 1;  // [s]
-  const bool listened_to = status_.getNumSubscribers() > 0;
+  const bool listened_to = status_.getNumSubscribers() > 0 || diagnostics_.listenedTo();
   const double age = (ros::WallTime::now() - last_status_).toSec();
   if (!status_changed_.exchange(false) && !(listened_to && age >= kPeriod)) return;
-  status_.publish(status(runner_.snapshot()));
+  const Report now = report(runner_.snapshot());
+  status_.publish(now.status);
+  if (diagnostics_.listenedTo()) diagnostics_.publish(now);
 }
 
 double Publisher::realTimeFactor(const core::State& state) {
@@ -90,10 +96,11 @@ double Publisher::realTimeFactor(const core::State& state) {
   return elapsed > 0 && simulated > 0 ? simulated / elapsed : 0;
 }
 
-Status Publisher::status(const core::Runner::Snapshot& snapshot) {
+Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   const core::State& state = snapshot.state;
   const core::System& system = *snapshot.system;
-  Status message;
+  Report report;
+  Status& message = report.status;
   message.header.stamp = ros::Time::now();
   message.header.frame_id = parameters_.frame_id;
   message.time = state.time;
@@ -118,9 +125,12 @@ Status Publisher::status(const core::Runner::Snapshot& snapshot) {
   message.angular_momentum_error = measures.angular_momentum_error;
   message.norm_error = measures.norm_error;
   message.max_torque = measures.max_torque;
+  report.warning = measures.warning;
+  report.blown_up = measures.blown_up;
+  report.behind = lag_.behind(message.state == "running", ros::Time::now().toSec(), state.time);
   const std::lock_guard<std::mutex> lock(mutex_);
   message.message = measures.warning.empty() ? message_ : measures.warning;
-  return message;
+  return report;
 }
 
 }  // namespace spherical_springs

@@ -6,20 +6,21 @@
 #include <ros/timer.h>
 #include <ros/wall_timer.h>
 #include <spherical_springs/Energies.h>
-#include <spherical_springs/Status.h>
 
 #include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "diagnostics.h"
+#include "lag.h"
 #include "parameters.h"
 #include "spherical_springs/runner.h"
 
 namespace spherical_springs {
 
-/// Publishes poses, energies and status. Nothing is computed for a topic that nobody listens to,
-/// but for the status at a change, which is latched.
+/// Publishes poses, energies, status and diagnostics. Nothing is computed for a topic that nobody
+/// listens to, but for the status at a change, which is latched.
 class Publisher {
  public:
   /// `runner` must live longer.
@@ -33,10 +34,12 @@ class Publisher {
 
   Energies energies(const core::Runner::Snapshot& snapshot) const;
 
+  Diagnostics& diagnostics() { return diagnostics_; }
+
  private:
   void publishSample();
   void publishStatusIfDue();
-  Status status(const core::Runner::Snapshot& snapshot);
+  Report report(const core::Runner::Snapshot& snapshot);
   double realTimeFactor(const core::State& state);
 
   // Read-only.
@@ -45,10 +48,12 @@ class Publisher {
   // Safe for many threads by themselves.
   core::Runner& runner_;
   std::atomic<bool> status_changed_{true};
+  Diagnostics diagnostics_;
 
   // Used by the status timer alone.
   ros::WallTime last_status_;
   double last_simulated_ = 0;
+  Lag lag_;
 
   std::mutex mutex_;
   std::string message_;  // guarded by mutex_

@@ -42,6 +42,9 @@ void Services::advertise(ros::NodeHandle& node, const std::string& name,
       (this->*handle)(request, response);
     } catch (const std::bad_alloc&) {
       refuse("there is not enough memory for this");
+    } catch (const core::NonFinite& fault) {
+      publisher_.diagnostics().refused(fault.what());
+      refuse(fault.what());
     } catch (const std::exception& fault) {
       refuse(fault.what());
     }
@@ -144,6 +147,7 @@ void Services::loadScene(const LoadScene::Request& request, LoadScene::Response&
   const auto limits = runner_.read([](const core::Simulation& s) { return s.settings().limits; });
   auto file = core::readScene(path, limits);
   runner_.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  publisher_.diagnostics().relaxed("");
   response.message = "loaded " + path.string();
   publisher_.tell(response.message);
 }
@@ -163,11 +167,13 @@ void Services::saveScene(const SaveScene::Request& request, SaveScene::Response&
 
 void Services::clear(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   runner_.change([](core::Simulation& s) { s.clear(); });
+  publisher_.diagnostics().relaxed("");
   response.message = "the scene is empty, time 0";
 }
 
 void Services::reset(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   runner_.change([](core::Simulation& s) { s.reset(); });
+  publisher_.diagnostics().relaxed("");
   response.message = "every particle is where it was last added or set, time 0";
 }
 
@@ -210,6 +216,7 @@ void Services::relax(const Relax::Request& request, Relax::Response& response) {
   response.energy_after = result.energy_after;
   response.max_torque = result.max_torque;
   response.message = result.message;
+  publisher_.diagnostics().relaxed(result.converged ? "" : result.message);
   publisher_.tell("relax: " + result.message);
 }
 

@@ -1,0 +1,74 @@
+#include "diagnostics.h"
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+
+namespace spherical_springs {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+Diagnostics::Diagnostics(ros::NodeHandle node)
+    : listeners_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {
+  updater_.setHardwareID("none");
+  updater_.add("Simulation", this, &Diagnostics::fill);
+}
+
+void Diagnostics::publish(const Report& report) {
+  report_ = report;
+  updater_.force_update();
+}
+
+void Diagnostics::refused(const std::string& reason) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  refusal_ = reason;
+  refused_at_ = ros::WallTime::now();
+  ++refusals_;
+}
+
+void Diagnostics::relaxed(const std::string& fault) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  relaxation_fault_ = fault;
+}
+
+void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
+  constexpr double kRemembered = 10;  // [s]
+  const Status& status = report_.status;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  wrapper.summary(DiagnosticStatus::OK, status.state);
+  if (report_.blown_up) {
+    wrapper.mergeSummary(DiagnosticStatus::ERROR, "blown up: " + report_.warning);
+  } else if (!report_.warning.empty()) {
+    wrapper.mergeSummary(DiagnosticStatus::WARN, report_.warning);
+  }
+  if (refusals_ > 0 && (ros::WallTime::now() - refused_at_).toSec() < kRemembered) {
+    wrapper.mergeSummary(DiagnosticStatus::ERROR, "refused: " + refusal_);
+  }
+  if (report_.behind) {
+    wrapper.mergeSummary(DiagnosticStatus::WARN, "simulated time falls behind the clock");
+  }
+  if (!relaxation_fault_.empty()) {
+    wrapper.mergeSummary(DiagnosticStatus::WARN, "not converged: " + relaxation_fault_);
+  }
+
+  wrapper.add("time [s]", status.time);
+  wrapper.add("steps", status.steps);
+  wrapper.add("particles", status.particles);
+  wrapper.add("angle springs", status.angle_springs);
+  wrapper.add("solid-angle springs", status.solid_angle_springs);
+  wrapper.add("oriented-angle springs", status.oriented_angle_springs);
+  wrapper.add("state", status.state);
+  wrapper.add("integrator", status.integrator);
+  wrapper.add("time step [s]", status.time_step);
+  wrapper.add("stable time step [s]", status.stable_time_step);
+  wrapper.add("real-time factor", status.real_time_factor);
+  wrapper.add("wall time of a step [s]", status.step_wall_time);
+  wrapper.add("local error [rad]", status.local_error);
+  wrapper.add("energy error", status.energy_error);
+  wrapper.add("angular momentum error", status.angular_momentum_error);
+  wrapper.add("norm error", status.norm_error);
+  wrapper.add("largest torque [N m]", status.max_torque);
+  wrapper.add("progress of relaxation", status.relax_progress);
+  wrapper.add("requests refused for numbers that are not finite", refusals_);
+  wrapper.add("message", status.message);
+}
+
+}  // namespace spherical_springs
