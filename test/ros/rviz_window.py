@@ -24,34 +24,45 @@ RIGHT = np.array([-1, 1, 0]) / 2 ** 0.5
 UP = np.cross(TOWARDS_EYE, RIGHT)
 
 
+class Display:
+    """An X server of its own, from __enter__, which returns its environment, to __exit__."""
+
+    def __enter__(self):
+        receive, send = os.pipe()
+        self._server = subprocess.Popen(
+            ['Xvfb', '-displayfd', str(send), '-screen', '0', '1200x800x24', '-nolisten', 'tcp'],
+            pass_fds=[send], stderr=subprocess.DEVNULL)
+        os.close(send)
+        with os.fdopen(receive) as numbers:
+            return {'DISPLAY': ':' + numbers.readline().strip(), 'LIBGL_ALWAYS_SOFTWARE': '1'}
+
+    def __exit__(self, *_):
+        self._server.terminate()
+        self._server.wait(LONG)
+
+
 class Window:
     """A launch file with rviz:=true, from __enter__ to __exit__."""
 
     def __init__(self, launch_file, *arguments):
         self._command = ['roslaunch', PACKAGE, launch_file, 'rviz:=true', *arguments]
+        self._display = Display()
 
     def __enter__(self):
-        receive, send = os.pipe()
-        self._display = subprocess.Popen(
-            ['Xvfb', '-displayfd', str(send), '-screen', '0', '1200x800x24', '-nolisten', 'tcp'],
-            pass_fds=[send], stderr=subprocess.DEVNULL)
-        os.close(send)
-        with os.fdopen(receive) as numbers:
-            self._environment = {**os.environ, 'LIBGL_ALWAYS_SOFTWARE': '1',
-                                 'DISPLAY': ':' + numbers.readline().strip()}
+        self._environment = {**os.environ, **self._display.__enter__()}
         self._launch = subprocess.Popen(self._command, env=self._environment,
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         return self
 
     def __exit__(self, *_):
-        for process in (self._launch, self._display):
-            process.send_signal(signal.SIGINT)
-            process.wait(LONG)
+        self._launch.send_signal(signal.SIGINT)
+        self._launch.wait(LONG)
+        self._display.__exit__()
 
     def picture(self):
         with tempfile.NamedTemporaryFile(suffix='.png') as file:
-            subprocess.run(['import', '-window', 'root', 'PNG24:' + file.name], env=self._environment,
-                           check=True)
+            subprocess.run(['import', '-window', 'root', 'PNG24:' + file.name],
+                           env=self._environment, check=True)
             return Picture(image.imread(file.name)[..., :3])
 
 
