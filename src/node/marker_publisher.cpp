@@ -3,6 +3,7 @@
 #include <ros/serialization.h>
 #include <ros/single_subscriber_publisher.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "markers.h"
@@ -47,10 +48,13 @@ void MarkerPublisher::greet(const ros::SingleSubscriberPublisher& listener) {
 }
 
 void MarkerPublisher::publishChanges() {
-  constexpr double kBytesPerSecond = 5e7;  // that large scenes may take of everyone's time
+  // What large scenes may take of everyone's time: of the network's, and of a processor's.
+  constexpr double kBytesPerSecond = 5e7;
+  constexpr double kRestAfterWork = 4;
   if (publisher_.getNumSubscribers() == 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (sent_.empty() || ros::WallTime::now() < next_) return;
+  const ros::WallTime begin = ros::WallTime::now();
   auto now = runner_.snapshot();
   if (now.system == system_ && samePlaces(now.state.positions, positions_)) return;
 
@@ -64,8 +68,10 @@ void MarkerPublisher::publishChanges() {
 
   const MarkerArray message = withHeaders(std::move(changed));
   const double bytes = ros::serialization::serializationLength(message);
-  next_ = ros::WallTime::now() + ros::WallDuration(bytes / kBytesPerSecond);
   publisher_.publish(message);
+  const ros::WallTime end = ros::WallTime::now();
+  next_ =
+      end + std::max(ros::WallDuration(bytes / kBytesPerSecond), (end - begin) * kRestAfterWork);
 }
 
 void MarkerPublisher::remember(core::Runner::Snapshot moment, std::vector<Marker> markers) {

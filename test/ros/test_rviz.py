@@ -16,6 +16,9 @@ sys.path.append(os.path.join(rospkg.RosPack().get_path(PACKAGE), 'scripts', 'dem
 import mesh  # noqa: E402
 
 
+PICTURES = rospkg.get_test_results_dir()  # where they stay to be looked at
+
+
 def middle(*points):
     total = np.sum(points, axis=0)
     return total / np.linalg.norm(total)
@@ -36,7 +39,8 @@ class TestRViz(unittest.TestCase):
                 (p for p in [window.picture()] if not missing(p)), None))
         except AssertionError:
             self.fail('missing: %s' % missing(window.picture()))
-        picture.save(os.path.join(rospkg.get_test_results_dir(), name + '.png'))
+        os.makedirs(PICTURES, exist_ok=True)
+        picture.save(os.path.join(PICTURES, name + '.png'))
 
     def corners_and_arcs(self, node, colour):
         places = positions(node.get_scene())
