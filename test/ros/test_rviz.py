@@ -1,4 +1,7 @@
-"""What RViz shows of ~markers, looked at pixel by pixel."""
+"""What RViz shows of ~markers, looked at pixel by pixel.
+
+Three of the pictures that this leaves, side by side, are doc/rviz.png.
+"""
 
 import math
 import os
