@@ -32,8 +32,11 @@ bool samePlaces(const core::Points& a, const core::Points& b) {
 MarkerPublisher::MarkerPublisher(ros::NodeHandle node, core::Runner& runner,
                                  const Parameters& parameters)
     : parameters_(parameters), runner_(runner) {
+  // Not too few: what a listener loses of springs that stand still does not come again.
+  constexpr int kQueue = 10;
   publisher_ = node.advertise<MarkerArray>(
-      "markers", 2, [this](const ros::SingleSubscriberPublisher& listener) { greet(listener); });
+      "markers", kQueue,
+      [this](const ros::SingleSubscriberPublisher& listener) { greet(listener); });
   timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
                             [this](const ros::TimerEvent&) { publishChanges(); });
 }
@@ -43,8 +46,7 @@ void MarkerPublisher::greet(const ros::SingleSubscriberPublisher& listener) {
   auto now = runner_.snapshot();
   std::vector<Marker> markers = changingMarkers(now, parameters_.radius);
   if (publisher_.getNumSubscribers() <= 1) remember(std::move(now), markers);
-  markers.push_back(sphereMarker(parameters_.radius));
-  listener.publish(withHeaders(std::move(markers)));
+  listener.publish(arrayOf(std::move(markers)));
 }
 
 void MarkerPublisher::publishChanges() {
@@ -66,7 +68,7 @@ void MarkerPublisher::publishChanges() {
   remember(std::move(now), std::move(markers));
   if (changed.empty()) return;
 
-  const MarkerArray message = withHeaders(std::move(changed));
+  const MarkerArray message = arrayOf(std::move(changed));
   const double bytes = ros::serialization::serializationLength(message);
   publisher_.publish(message);
   const ros::WallTime end = ros::WallTime::now();
@@ -80,9 +82,10 @@ void MarkerPublisher::remember(core::Runner::Snapshot moment, std::vector<Marker
   sent_ = std::move(markers);
 }
 
-MarkerArray MarkerPublisher::withHeaders(std::vector<Marker> markers) {
+MarkerArray MarkerPublisher::arrayOf(std::vector<Marker> markers) {
   MarkerArray message;
   message.markers = std::move(markers);
+  message.markers.push_back(sphereMarker(parameters_.radius));
   for (Marker& marker : message.markers) {
     marker.header.frame_id = parameters_.frame_id;
     marker.header.stamp = ros::Time::now();

@@ -25,7 +25,8 @@ class MarkerPublisher {
   void greet(const ros::SingleSubscriberPublisher& listener);
   void publishChanges();
   void remember(core::Runner::Snapshot moment, std::vector<visualization_msgs::Marker> markers);
-  visualization_msgs::MarkerArray withHeaders(std::vector<visualization_msgs::Marker> markers);
+  /// With the sphere, which is small, and with headers.
+  visualization_msgs::MarkerArray arrayOf(std::vector<visualization_msgs::Marker> markers);
 
   // Read-only.
   const Parameters parameters_;

@@ -55,7 +55,7 @@ class TestMarkers(NodeTest):
             self.node.set_springs(angle_spring_ids=spring_ids, angle_springs=springs)
             recoloured = arrays.first(
                 lambda a: 'arcs' in names(a) and by_name(a)['arcs'].colors != before.colors)
-            self.assertEqual({'arcs'}, names(recoloured))
+            self.assertEqual({'sphere', 'arcs'}, names(recoloured))
             self.assertEqual(before.points, by_name(recoloured)['arcs'].points)
 
     def test_only_what_changes_is_sent_again(self):
@@ -72,7 +72,7 @@ class TestMarkers(NodeTest):
             self.node.set_particles(ids[:1], moving)
             self.node.set_running(True)
             for array in arrays.several(10)[1:]:
-                self.assertEqual({'particles'}, names(array))
+                self.assertEqual({'sphere', 'particles'}, names(array))
 
     def test_nothing_is_sent_while_nothing_changes(self):
         add_octant(self.node, damping=0)
@@ -89,9 +89,9 @@ class TestMarkers(NodeTest):
         with self.node.listen('markers', MarkerArray) as arrays:
             arrays.first()
             self.node.remove_particles(ids)
-            deleted = by_name(arrays.several(2)[1])
-        self.assertEqual({'particles', 'arcs'}, set(deleted))
-        self.assertEqual({Marker.DELETE}, {m.action for m in deleted.values()})
+            deleted = arrays.several(2)[1].markers
+        self.assertEqual({'particles': Marker.DELETE, 'arcs': Marker.DELETE, 'sphere': Marker.ADD},
+                         {marker.ns: marker.action for marker in deleted})
 
     def test_frame_radius_and_rate_are_parameters(self):
         with NodeProcess(running='false', frame_id='globe', radius=6.5,

@@ -56,8 +56,11 @@ class TestRViz(unittest.TestCase):
         return [(point, colour) for point, colour in named if visible(point)]
 
     def test_octant(self):
-        with Window('octant.launch', 'running:=false') as window:
+        with Window('octant.launch') as window:
             node = NodeClient()
+            self.assert_shows(window, [], 'rviz_octant_running')
+            node.set_running(False)
+            node.reset()
             springs = node.get_scene().angle_springs
             springs[0].rest_angle = 0.2
             node.set_springs(angle_spring_ids=[0], angle_springs=springs[:1])
