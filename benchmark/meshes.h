@@ -1,12 +1,12 @@
 // Meshes and networks for measurements, the same every run.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <random>
-#include <utility>
+#include <unordered_map>
 #include <vector>
 
 #include "spherical_springs/scene.h"
@@ -33,20 +33,21 @@ inline Mesh icosahedron() {
   mesh.vertices = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
                    {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
   for (Vector3& vertex : mesh.vertices) vertex.normalize();
-  mesh.faces = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  mesh.faces = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   return mesh;
 }
 
 /// Cuts every face into four; the edges are those of the result.
 inline Mesh subdivided(const Mesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+  std::unordered_map<std::uint64_t, std::uint32_t> middles;
+  middles.reserve(mesh.faces.size() * 3 / 2);
   Mesh result;
   result.vertices = mesh.vertices;
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), result.vertices.size());
+  const auto middle = [&](std::uint64_t a, std::uint64_t b) {
+    const auto [found, is_new] =
+        middles.try_emplace(std::min(a, b) << 32 | std::max(a, b), result.vertices.size());
     if (is_new) {
       result.vertices.push_back((result.vertices[a] + result.vertices[b]).normalized());
     }
@@ -54,8 +55,7 @@ inline Mesh subdivided(const Mesh& mesh) {
   };
   for (const auto& [a, b, c] : mesh.faces) {
     const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    result.faces.insert(result.faces.end(),
-                        {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+    result.faces.insert(result.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
   }
   return result;
 }
