@@ -129,6 +129,16 @@ void constrain(const System& system, double* positions, ceres::Manifold& sphere,
   }
 }
 
+/// What Ceres compares with its gradient tolerance is the gradient in the manifold's coordinates,
+/// taken back into space: this much of the gradient (in version 2.1, whose coordinates are twice
+/// the angle, a quarter).
+double shareOfGradient(const ceres::Manifold& sphere) {
+  const Vector3 point = Vector3::UnitZ();
+  Eigen::Matrix<double, 3, 2, Eigen::RowMajor> jacobian;
+  sphere.PlusJacobian(point.data(), jacobian.data());
+  return jacobian.col(0).squaredNorm();
+}
+
 ceres::Solver::Options options(double tolerance, double max_time) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -159,7 +169,7 @@ CeresResult relaxByCeres(const System& system, const Points& positions, double t
   constrain(system, places, sphere, problem);
 
   ceres::Solver::Summary summary;
-  ceres::Solve(options(tolerance, max_time), &problem, &summary);
+  ceres::Solve(options(tolerance * shareOfGradient(sphere), max_time), &problem, &summary);
   result.positions.colwise().normalize();
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.iterations = static_cast<int>(summary.iterations.size()) - 1;

@@ -2,6 +2,7 @@
 
 #include <Spectra/SymEigsSolver.h>
 
+#include <Eigen/CholmodSupport>
 #include <Eigen/Eigenvalues>
 #include <numeric>
 
@@ -123,7 +124,7 @@ struct Extreme {
 
 Extreme extreme(Operator op, Spectra::SortRule which, double tolerance) {
   constexpr Eigen::Index kBasis = 120;
-  constexpr Eigen::Index kRestarts = 300;
+  constexpr Eigen::Index kRestarts = 60;
   Random random(1);
   Eigen::VectorXd start(op.rows());
   for (double& component : start) component = random.between(-1, 1);
@@ -161,13 +162,35 @@ EigenvalueRange byAllEigenvalues(const SparseMatrix& hessian, const SparseMatrix
 
 }  // namespace
 
-EigenvalueRange eigenvalueRange(const System& system, const Points& positions) {
+EigenvalueRange eigenvalueRange(const System& system, const SparseMatrix& hessian,
+                                const Points& positions) {
   constexpr Eigen::Index kFewUnknowns = 1300;
-  const SparseMatrix hessian = differenceHessian(system, positions);
   if (hessian.rows() == 0) return {};
   const SparseMatrix turns = rotations(system, positions);
   return hessian.rows() <= kFewUnknowns ? byAllEigenvalues(hessian, turns)
                                         : byLanczos(hessian, turns);
+}
+
+double leastDefiniteShift(const SparseMatrix& hessian) {
+  if (hessian.rows() == 0) return 0;
+  const Eigen::VectorXd diagonal = hessian.diagonal().cwiseAbs();
+  const Eigen::VectorXd scale =
+      (diagonal.array() > 0).select(diagonal.cwiseSqrt().cwiseInverse(), 1);
+  const SparseMatrix scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  Eigen::CholmodSupernodalLLT<SparseMatrix> cholesky;
+  cholesky.cholmod().print = 0;
+  cholesky.analyzePattern(scaled);
+  const auto isDefinite = [&](int exponent) {
+    cholesky.setShift(std::pow(10, exponent));
+    cholesky.factorize(scaled);
+    return cholesky.info() == Eigen::Success;
+  };
+  int too_little = -15, enough = 0;
+  while (enough - too_little > 1) {
+    const int middle = (too_little + enough) / 2;
+    (isDefinite(middle) ? enough : too_little) = middle;
+  }
+  return std::pow(10, enough);
 }
 
 }  // namespace benchmark_scenes

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "spherical_springs/springs/condition.h"
 
@@ -68,7 +69,7 @@ class Differences {
     }
     SparseMatrix columns(2 * free_count_, 2 * free_count_);
     columns.setFromTriplets(entries_.begin(), entries_.end());
-    return 0.5 * (columns + SparseMatrix(columns.transpose()));
+    return symmetric(columns);
   }
 
  private:
@@ -97,6 +98,24 @@ class Differences {
         }
       }
     }
+  }
+
+  /// The mean of the matrix and its transpose, weighted by the variance that the rounding of a
+  /// row's torques gives to its entries: beside a stiff particle it is the soft one's row that
+  /// counts.
+  SparseMatrix symmetric(const SparseMatrix& columns) const {
+    const Eigen::VectorXd variance =
+        columns.diagonal().cwiseAbs2().cwiseMax(std::numeric_limits<double>::min());
+    SparseMatrix result = columns;
+    const SparseMatrix transposed = columns.transpose();
+    for (Eigen::Index j = 0; j < result.outerSize(); ++j) {
+      SparseMatrix::InnerIterator other(transposed, j);
+      for (SparseMatrix::InnerIterator entry(result, j); entry; ++entry, ++other) {
+        const double own = variance[entry.row()], others = variance[j];
+        entry.valueRef() = (entry.value() * others + other.value() * own) / (own + others);
+      }
+    }
+    return result;
   }
 
   Vector3 axisOf(std::uint32_t particle, int axis) const { return frames_[particle].col(axis); }

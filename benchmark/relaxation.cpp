@@ -95,8 +95,9 @@ double maxTorque(const System& system, const Points& positions) {
   return largest;
 }
 
-double relativeDifference(double energy, double other) {
-  return energy == other ? 0 : (energy - other) / std::max(energy, other);
+/// Of two energies, relative to the greater; 1e-12 of `start` counts as rounding.
+double relativeDifference(double energy, double other, double start) {
+  return (energy - other) / std::max({energy, other, 1e-12 * start});
 }
 
 // --- the benchmark scene ---
@@ -131,7 +132,8 @@ Measured measureScene(int level, const MemoryUse& memory, const Settings& settin
         [&] { return relaxByCeres(system, start, settings.tolerance, settings.max_time); });
     ratio = ceres->seconds / two.seconds;
     difference =
-        relativeDifference(two.result.energy_after, system.potential(ceres->positions).total());
+        relativeDifference(two.result.energy_after, system.potential(ceres->positions).total(),
+                           two.result.energy_before);
   }
   const double particles = static_cast<double>(start.cols());
   printRow({text(particles, 7), text(one.seconds), text(two.seconds),
@@ -181,8 +183,7 @@ void measureScenes(const Settings& settings) {
 
 // --- the networks ---
 
-std::string eigenvalue(const System& system, const Points& positions) {
-  const EigenvalueRange range = eigenvalueRange(system, positions);
+std::string eigenvalue(const EigenvalueRange& range) {
   if (!range.resolved) return "unresolved";
   return text(range.largest > 0 ? range.smallest / range.largest : 0, 2);
 }
@@ -192,29 +193,33 @@ void measureNetwork(const Network& network, const Settings& settings) {
   const System system = systemOf(scene, 2);
   const Points start = startOf(scene);
   const Timed ours = timedRelax(system, start, settings);
-  std::vector<std::string> cells = {network.name, text(system.potential(start).total(), 4),
+  const double energy_before = system.potential(start).total();
+  std::vector<std::string> cells = {network.name, text(energy_before, 4),
                                     text(ours.result.energy_after, 7)};
   std::vector<std::string> of_ceres = {"-", "-", "-", "-", "-"};
   if (!settings.without_ceres) {
     const double tolerance = settings.tolerance > 0 ? settings.tolerance : defaultTolerance(system);
     const CeresResult ceres = relaxByCeres(system, start, tolerance, settings.max_time);
     const double energy = system.potential(ceres.positions).total();
-    of_ceres = {text(energy, 7), text(relativeDifference(ours.result.energy_after, energy), 2),
+    of_ceres = {text(energy, 7),
+                text(relativeDifference(ours.result.energy_after, energy, energy_before), 2),
                 text(maxTorque(system, ceres.positions), 2), std::to_string(ceres.iterations),
                 text(ceres.seconds) + (ceres.converged ? "" : " (not converged)")};
   }
+  const SparseMatrix hessian = differenceHessian(system, ours.result.positions);
   cells.insert(
       cells.end(),
       {of_ceres[0], of_ceres[1], text(maxTorque(system, ours.result.positions), 2), of_ceres[2],
        std::to_string(ours.result.iterations), of_ceres[3], text(ours.seconds), of_ceres[4],
-       eigenvalue(system, ours.result.positions), ours.result.message});
+       eigenvalue(eigenvalueRange(system, hessian, ours.result.positions)),
+       text(leastDefiniteShift(hessian), 1), ours.result.message});
   printRow(cells);
 }
 
 void measureNetworks(const Settings& settings) {
   printHeader({"network", "energy at the start [J]", "energy [J]", "Ceres's", "against Ceres's",
                "torque [N m]", "Ceres's", "iterations", "Ceres's", "time [s]", "Ceres's",
-               "smallest eigenvalue / largest", "message"});
+               "smallest eigenvalue / largest", "definite from", "message"});
   for (const Network& network : networks()) {
     if (network.name.find(settings.only) != std::string::npos) measureNetwork(network, settings);
   }
