@@ -9,11 +9,7 @@
 
 namespace benchmark_scenes {
 
-using spherical_springs::core::Points;
 using spherical_springs::core::Scene;
-
-/// Where the particles of a scene start: one column each.
-Points startOf(const Scene& scene);
 
 /// An icosphere of 10 * 4^level + 2 vertices: an angle spring on each edge (stiffness 1, at rest
 /// within 10 % of its arc), a solid-angle spring on each face (stiffness 10, at rest within 20 % of

@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -16,6 +17,7 @@
 #include "curvature.h"
 #include "memory_use.h"
 #include "networks.h"
+#include "scene_parts.h"
 #include "spherical_springs/scene_file.h"
 
 namespace {
@@ -148,9 +150,8 @@ Measured measureScene(int level, const MemoryUse& memory, const Settings& settin
 }
 
 /// The exponent of the power law that fits best: least squares of the logarithms.
-std::optional<double> growth(const std::vector<Measured>& rows,
-                             const std::function<double(const Measured&)>& seconds) {
-  if (rows.size() < 2) return std::nullopt;
+double growth(const std::vector<Measured>& rows,
+              const std::function<double(const Measured&)>& seconds) {
   Eigen::VectorXd x(rows.size()), y(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     x[i] = std::log(rows[i].particles);
@@ -171,6 +172,7 @@ void measureScenes(const Settings& settings) {
   for (std::size_t i = 0; i < memory.size(); ++i) {
     rows.push_back(measureScene(settings.levels[i], memory[i], settings));
   }
+  if (rows.size() < 2) return;
   const auto grows = [&](auto seconds) { return text(growth(rows, seconds)); };
   std::cout << "\nGrowth with the number of particles, exponents: "
             << grows([](const Measured& row) { return row.one_thread; }) << " on one thread, "
