@@ -76,7 +76,7 @@ struct SolidAngleResidual {
     const T triple_product = tripleProduct(pa, pb, pc);
     const T denominator = T(1) + pa.dot(pb) + pb.dot(pc) + pc.dot(pa);
     T value = T(-spring.rest_solid_angle);
-    if (triple_product != T(0) || denominator != T(0)) {
+    if (triple_product * triple_product + denominator * denominator > T(0)) {
       value += T(2) * atan2(triple_product, denominator);
     }
     if (value > T(2 * kPi)) value -= T(4 * kPi);
