@@ -1,0 +1,104 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "format.h"
+#include "spherical_springs/scene_file.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+/// One object on one line, its fields in the order in which they are written.
+class ObjectWriter {
+ public:
+  explicit ObjectWriter(std::ostream& out) : out_(out) { out_ << '{'; }
+  ~ObjectWriter() { out_ << '}'; }
+  ObjectWriter(const ObjectWriter&) = delete;
+  ObjectWriter& operator=(const ObjectWriter&) = delete;
+
+  void write(const char* field, const Json& value) {
+    out_ << (first_ ? "\"" : ",\"") << field << "\":" << value.dump();
+    first_ = false;
+  }
+
+ private:
+  std::ostream& out_;
+  bool first_ = true;
+};
+
+Json toJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+void writeFields(ObjectWriter& object, const Particle& particle) {
+  object.write("position", toJson(particle.position));
+  object.write("angular_velocity", toJson(particle.angular_velocity));
+  object.write("pinned", particle.pinned);
+}
+
+template <class Spring>
+void writeFields(ObjectWriter& object, const Spring& spring) {
+  object.write("particles", spring.particles);
+}
+
+template <class Item>
+void writeItems(std::ostream& out, const char* name, const IdTable<Item>& table) {
+  out << ",\n\"" << name << "\": [";
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    out << (i > 0 ? ",\n " : "\n ");
+    ObjectWriter object(out);
+    object.write("id", table.ids()[i]);
+    writeFields(object, table.item(i));
+    Item::visitFields(table.item(i), [&](const char* field, double value, const Range&) {
+      object.write(field, value);
+    });
+  }
+  out << "\n]";
+}
+
+/// Puts what was written to a file, or to a directory's list of names, on the disk.
+void flushToDisk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) failTo("open", path);
+  const bool done = ::fsync(file) == 0;
+  ::close(file);
+  if (!done) failTo("write", path);
+}
+
+/// A name that no other save has, in this process or another.
+fs::path partOf(const fs::path& path) {
+  static std::atomic<unsigned> saves{0};
+  return path.string() + ".part" + std::to_string(::getpid()) + "-" + std::to_string(saves++);
+}
+
+}  // namespace
+
+void writeScene(const fs::path& path, const Scene& scene, double time) {
+  const fs::path part = partOf(path);
+  try {
+    std::ofstream out(part, std::ios::binary | std::ios::trunc);
+    if (!out) failTo("write", part);
+    out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << Json(time).dump();
+    writeItems(out, "particles", scene.particles());
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      writeItems(out, Spring::kTable, scene.springs<Spring>());
+    });
+    out << "}\n";
+    out.close();
+    if (!out) failTo("write", part);
+    flushToDisk(part);
+    fs::rename(part, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(part, ignored);
+    throw;
+  }
+  flushToDisk(path.has_parent_path() ? path.parent_path() : ".");
+}
+
+}  // namespace spherical_springs::core
