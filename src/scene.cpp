@@ -16,6 +16,7 @@ Ids Scene::addParticles(std::vector<Particle> particles) {
   checkParticles(particles);
   Ids ids;
   ids.reserve(particles.size());
+  particles_.makeRoomFor(particles.size());
   for (const Particle& particle : particles) ids.push_back(particles_.add(particle));
   return ids;
 }
@@ -34,19 +35,21 @@ Scene::Removal Scene::removeParticles(const Ids& ids) {
   for (const std::size_t index : indicesOf(particles_, ids, "ids", "a particle")) {
     removal.particles[index] = true;
   }
+  PerKind<Marks> doomed;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
-    auto& table = springs_.get<Spring>();
-    std::vector<bool> doomed(table.size(), false);
+    const auto& table = springs_.get<Spring>();
+    auto& marks = doomed.get<Spring>().values;
+    marks.assign(table.size(), false);
     for (std::size_t s = 0; s < table.size(); ++s) {
       const auto& ends = table.item(s).particles;
-      doomed[s] = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t id) {
+      marks[s] = std::any_of(ends.begin(), ends.end(), [&](std::uint32_t id) {
         return removal.particles[*particles_.find(id)];
       });
-      removal.springs += doomed[s];
+      removal.springs += marks[s];
     }
-    table.remove(doomed);
   });
+  remove(doomed);
   particles_.remove(removal.particles);
   return removal;
 }
@@ -69,6 +72,11 @@ SpringIds Scene::addSprings(SpringLists springs, const Points& positions) {
   requireRoom("springs", springCount(), added, limits_.springs);
   checkSprings(springs, positions);
   SpringIds ids;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    ids.get<Spring>().reserve(springs.get<Spring>().size());
+    springs_.get<Spring>().makeRoomFor(springs.get<Spring>().size());
+  });
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     for (const Spring& spring : springs.get<Spring>()) {
@@ -108,6 +116,10 @@ void Scene::removeSprings(const SpringIds& ids) {
       marks[index] = true;
     }
   });
+  remove(doomed);
+}
+
+void Scene::remove(const PerKind<Marks>& doomed) {
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     springs_.get<Spring>().remove(doomed.get<Spring>().values);

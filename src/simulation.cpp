@@ -3,6 +3,27 @@
 #include <utility>
 
 namespace spherical_springs::core {
+namespace {
+
+void place(const Particle& particle, Eigen::Index i, State& state) {
+  state.positions.col(i) = particle.position;
+  state.angular_velocities.col(i) = particle.angular_velocity;
+}
+
+/// Every particle of a scene where it was last added or set, time 0.
+State startOf(const Scene& scene) {
+  const auto& particles = scene.particles().items();
+  State state;
+  state.positions.resize(3, particles.size());
+  state.angular_velocities.resize(3, particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) place(particles[i], i, state);
+  return state;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Settings& settings)
+    : settings_(settings), scene_(settings.limits), state_(startOf(scene_)) {}
 
 void Simulation::changed() {
   system_.reset();
@@ -12,15 +33,14 @@ void Simulation::changed() {
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {
-  auto ids = scene_.addParticles(std::move(particles));
   const auto before = state_.positions.cols();
-  const auto count = static_cast<Eigen::Index>(scene_.particles().size());
-  state_.positions.conservativeResize(Eigen::NoChange, count);
-  state_.angular_velocities.conservativeResize(Eigen::NoChange, count);
-  for (Eigen::Index i = before; i < count; ++i) {
-    state_.positions.col(i) = scene_.particles().item(i).position;
-    state_.angular_velocities.col(i) = scene_.particles().item(i).angular_velocity;
-  }
+  const auto count = before + static_cast<Eigen::Index>(particles.size());
+  State grown = state_;
+  grown.positions.conservativeResize(Eigen::NoChange, count);
+  grown.angular_velocities.conservativeResize(Eigen::NoChange, count);
+  auto ids = scene_.addParticles(std::move(particles));
+  for (Eigen::Index i = before; i < count; ++i) place(scene_.particles().item(i), i, grown);
+  state_ = std::move(grown);
   changed();
   return ids;
 }
@@ -28,8 +48,7 @@ std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> partic
 void Simulation::setParticles(const std::vector<std::uint32_t>& ids,
                               std::vector<Particle> particles) {
   for (const std::size_t i : scene_.setParticles(ids, std::move(particles))) {
-    state_.positions.col(i) = scene_.particles().item(i).position;
-    state_.angular_velocities.col(i) = scene_.particles().item(i).angular_velocity;
+    place(scene_.particles().item(i), i, state_);
   }
   changed();
 }
@@ -67,27 +86,21 @@ void Simulation::removeSprings(const SpringIds& ids) {
 
 void Simulation::clear() {
   scene_.clear();
-  placeAtStart();
+  begin(startOf(scene_));
 }
 
-void Simulation::reset() { placeAtStart(); }
+void Simulation::reset() { begin(startOf(scene_)); }
 
 void Simulation::load(SceneFile file) {
+  State start = startOf(file.scene);
+  start.time = file.time;
   file.scene.reserveIdsOf(scene_);
   scene_ = std::move(file.scene);
-  placeAtStart();
-  state_.time = file.time;
+  begin(std::move(start));
 }
 
-void Simulation::placeAtStart() {
-  const auto& particles = scene_.particles().items();
-  state_ = State();
-  state_.positions.resize(3, particles.size());
-  state_.angular_velocities.resize(3, particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    state_.positions.col(i) = particles[i].position;
-    state_.angular_velocities.col(i) = particles[i].angular_velocity;
-  }
+void Simulation::begin(State start) {
+  state_ = std::move(start);
   changed();
 }
 

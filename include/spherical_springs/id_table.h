@@ -30,6 +30,12 @@ class IdTable {
     return static_cast<std::size_t>(found - ids_.begin());
   }
 
+  /// Takes the memory for so many more items, so that adding them cannot fail.
+  void makeRoomFor(std::size_t count) {
+    reserveFor(ids_, count);
+    reserveFor(items_, count);
+  }
+
   std::uint32_t add(const Item& item) { return add(next_id_, item); }
 
   /// Adds under an id that is not below `nextId()`.
@@ -62,6 +68,12 @@ class IdTable {
   }
 
  private:
+  template <class Value>
+  static void reserveFor(std::vector<Value>& values, std::size_t count) {
+    const std::size_t needed = values.size() + count;
+    if (needed > values.capacity()) values.reserve(std::max(needed, 2 * values.capacity()));
+  }
+
   std::vector<std::uint32_t> ids_;
   std::vector<Item> items_;
   std::uint32_t next_id_ = 0;

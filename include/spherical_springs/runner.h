@@ -74,6 +74,9 @@ class Runner {
   /// @return whether there was one.
   bool cancel();
 
+  /// Ends a step or relaxation under way, and refuses every further one.
+  void close();
+
   /// How things stand, to be measured at leisure without holding anything up.
   struct Snapshot {
     State state;
@@ -97,6 +100,7 @@ class Runner {
   FairMutex mutex_;  // guards what follows, but for the atomic
   Simulation simulation_;
   bool running_;
+  bool closed_ = false;
   Activity activity_ = Activity::none;
   double relax_progress_ = 0;
   double step_wall_time_ = 0;

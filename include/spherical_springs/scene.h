@@ -35,7 +35,8 @@ struct SceneLimits {
 
 /// Particles and springs under their ids. Each changing function checks the whole request first and
 /// throws std::invalid_argument, which names item, field, value and what is allowed, before
-/// anything is changed. Particles' places here are those at which they were last added or set.
+/// anything is changed; so it is when memory runs out. Particles' places here are those at which
+/// they were last added or set.
 class Scene {
  public:
   explicit Scene(SceneLimits limits = {}) : limits_(limits) {}
@@ -84,6 +85,13 @@ class Scene {
   void reserveIdsOf(const Scene& earlier);
 
  private:
+  /// Springs of one kind, marked by their indices.
+  template <class Spring>
+  struct Marks {
+    std::vector<bool> values;
+  };
+
+  void remove(const PerKind<Marks>& doomed);
   void checkSprings(SpringLists& springs, const Points& positions) const;
 
   SceneLimits limits_;

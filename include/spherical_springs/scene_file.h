@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <istream>
 
 #include "spherical_springs/scene.h"
 
@@ -12,13 +13,19 @@ struct SceneFile {
   double time = 0;  ///< simulated [s]
 };
 
-/// Fields left out are zero, ids left out follow the last one.
+/// Fields left out are zero, ids left out follow the last one. A file with more than `limits` allow
+/// is refused at the first item too many.
 /// @throw std::runtime_error when the file cannot be read, std::invalid_argument when what it says
-/// is not a scene: with the place in the file, or item, field, value and what is allowed.
+/// is not a scene: with the byte in the file and what the parser expected, or item, field, value
+/// and what is allowed.
 SceneFile readScene(const std::filesystem::path& path, SceneLimits limits);
 
-/// Writes beside `path` and renames, so that `path` is whole at any moment. Reading the file gives
-/// the same scene to the last bit.
+/// The same from a stream that can tell its position.
+SceneFile readScene(std::istream& in, SceneLimits limits);
+
+/// Writes beside `path` and renames, so that `path` is whole at any moment, whoever else writes it.
+/// Reading the file gives the same scene to the last bit. A process that is killed meanwhile leaves
+/// a file `path`.part* behind.
 /// @throw std::runtime_error when it cannot be written.
 void writeScene(const std::filesystem::path& path, const Scene& scene, double time);
 

@@ -14,8 +14,8 @@
 
 namespace spherical_springs::core {
 
-/// For one thread at a time. Changing functions throw what Scene's throw, and then change nothing;
-/// each begins the account of energy anew.
+/// For one thread at a time. Changing functions throw what Scene's throw, or std::bad_alloc, and
+/// then change nothing; each begins the account of energy anew.
 class Simulation {
  public:
   struct Settings {
@@ -25,9 +25,7 @@ class Simulation {
     SceneLimits limits;
   };
 
-  explicit Simulation(const Settings& settings) : settings_(settings), scene_(settings.limits) {
-    placeAtStart();
-  }
+  explicit Simulation(const Settings& settings);
 
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
   void setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
@@ -58,7 +56,7 @@ class Simulation {
   std::shared_ptr<Account> account();
 
  private:
-  void placeAtStart();
+  void begin(State start);
   void changed();
 
   Settings settings_;
