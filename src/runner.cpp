@@ -24,6 +24,7 @@ class Runner::Busy {
   Busy(Runner& runner, Activity activity) : runner_(runner) {
     const Lock lock(runner_.mutex_);
     runner_.requireIdle();
+    if (runner_.closed_) throw std::runtime_error("the node is shutting down");
     if (activity == Activity::stepping && runner_.running_) {
       throw std::runtime_error("the simulation is running; pause it first by ~set_running");
     }
@@ -167,6 +168,12 @@ bool Runner::cancel() {
   if (activity_ == Activity::none) return false;
   cancelled_ = true;
   return true;
+}
+
+void Runner::close() {
+  const Lock lock(mutex_);
+  closed_ = true;
+  cancelled_ = true;
 }
 
 Runner::Snapshot Runner::snapshot() {

@@ -17,13 +17,24 @@ namespace spherical_springs::core {
 
 using Ids = std::vector<std::uint32_t>;
 
+inline std::string itemName(const std::string& list, std::size_t index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+/// Something is wrong with one item of a list.
+struct ItemFault : std::invalid_argument {
+  ItemFault(const std::string& list_name, std::size_t item_index, const std::string& what)
+      : std::invalid_argument(itemName(list_name, item_index) + "." + what),
+        list(list_name),
+        index(item_index) {}
+
+  std::string list;
+  std::size_t index;
+};
+
 [[noreturn]] inline void refuse(const std::string& field, const std::string& value,
                                 const std::string& allowed) {
   throw std::invalid_argument(field + " is " + value + "; allowed: " + allowed);
-}
-
-inline std::string itemName(const std::string& list, std::size_t index) {
-  return list + "[" + std::to_string(index) + "]";
 }
 
 inline std::string toText(const Vector3& v) {
@@ -52,7 +63,7 @@ void checkEach(std::vector<Item>& items, const char* list, Check&& check) {
     } catch (const NonFinite& fault) {
       throw NonFinite(itemName(list, i) + "." + fault.what());
     } catch (const std::invalid_argument& fault) {
-      throw std::invalid_argument(itemName(list, i) + "." + fault.what());
+      throw ItemFault(list, i, fault.what());
     }
   }
 }
@@ -131,8 +142,9 @@ void requireRisingIds(const IdTable<Item>& table, const Ids& ids, const std::str
   for (std::size_t i = 0; i < ids.size(); ++i) {
     constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
     if (ids[i] < least || ids[i] > kMost) {
-      refuse(itemName(list, i) + ".id", std::to_string(ids[i]),
-             std::to_string(least) + " to " + std::to_string(kMost) + ", rising");
+      throw ItemFault(list, i,
+                      "id is " + std::to_string(ids[i]) + "; allowed: " + std::to_string(least) +
+                          " to " + std::to_string(kMost) + ", rising");
     }
     least = std::uint64_t(ids[i]) + 1;
   }
@@ -154,11 +166,6 @@ std::string oneOf() {
 template <class Spring>
 struct Indices {
   std::vector<std::size_t> values;
-};
-
-template <class Spring>
-struct Marks {
-  std::vector<bool> values;
 };
 
 template <class Spring>

@@ -1,5 +1,6 @@
 #include <ros/ros.h>
 
+#include <csignal>
 #include <stdexcept>
 
 #include "marker_publisher.h"
@@ -42,7 +43,7 @@ void run() {
   ros::AsyncSpinner spinner(kThreads);
   spinner.start();
   ros::waitForShutdown();
-  runner.cancel();
+  runner.close();
   spinner.stop();
 }
 
@@ -51,6 +52,8 @@ void run() {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_springs");
+  // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it
   try {
     spherical_springs::run();

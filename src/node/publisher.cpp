@@ -6,6 +6,7 @@
 
 #include "conversion.h"
 #include "spherical_springs/measures.h"
+#include "surviving.h"
 
 namespace spherical_springs {
 namespace {
@@ -32,10 +33,9 @@ Publisher::Publisher(ros::NodeHandle node, core::Runner& runner, const Parameter
   status_ = node.advertise<Status>("status", 10, on_listener, ros::SubscriberStatusCallback(),
                                    ros::VoidConstPtr(), true);
   sample_timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
-                                   [this](const ros::TimerEvent&) { publishSample(); });
-  status_timer_ =
-      node.createWallTimer(ros::WallDuration(kStatusCheck),
-                           [this](const ros::WallTimerEvent&) { publishStatusIfDue(); });
+                                   surviving([this] { publishSample(); }));
+  status_timer_ = node.createWallTimer(ros::WallDuration(kStatusCheck),
+                                       surviving([this] { publishStatusIfDue(); }));
 }
 
 void Publisher::tell(const std::string& message) {

@@ -1,7 +1,6 @@
 #include "services.h"
 
-#include <new>
-
+#include "answering_service.h"
 #include "conversion.h"
 #include "spherical_springs/range.h"
 
@@ -20,38 +19,35 @@ std::size_t springCount(const Message& message) {
          message.oriented_angle_springs.size();
 }
 
+/// Has the status published whether a call succeeds or not.
+class StatusChange {
+ public:
+  explicit StatusChange(Publisher& publisher) : publisher_(publisher) {}
+  ~StatusChange() { publisher_.statusChanged(); }
+  StatusChange(const StatusChange&) = delete;
+  StatusChange& operator=(const StatusChange&) = delete;
+
+ private:
+  Publisher& publisher_;
+};
+
 }  // namespace
 
-/// A service that answers whatever happens: what goes wrong becomes `success: false` and a message
-/// beside an otherwise empty response.
 template <class Service>
 void Services::advertise(ros::NodeHandle& node, const std::string& name,
                          void (Services::*handle)(const typename Service::Request&,
                                                   typename Service::Response&)) {
-  using Request = typename Service::Request;
-  using Response = typename Service::Response;
-  boost::function<bool(Request&, Response&)> answer = [this, handle](Request& request,
-                                                                     Response& response) {
-    const auto refuse = [&](const std::string& reason) {
-      response = Response();
-      response.success = false;
-      response.message = reason;
-    };
-    try {
-      response.success = true;
-      (this->*handle)(request, response);
-    } catch (const std::bad_alloc&) {
-      refuse("there is not enough memory for this");
-    } catch (const core::NonFinite& fault) {
-      publisher_.diagnostics().refused(fault.what());
-      refuse(fault.what());
-    } catch (const std::exception& fault) {
-      refuse(fault.what());
-    }
-    publisher_.statusChanged();
-    return true;
-  };
-  servers_.push_back(node.advertiseService(name, answer));
+  const auto limits = runner_.read([](const core::Simulation& s) { return s.settings().limits; });
+  servers_.push_back(advertiseAnswering<Service>(
+      node, name, limits, [this, handle](const auto& request, auto& response) {
+        const StatusChange told_at_the_end(publisher_);
+        try {
+          (this->*handle)(request, response);
+        } catch (const core::NonFinite& fault) {
+          publisher_.diagnostics().refused(fault.what());
+          throw;
+        }
+      }));
 }
 
 Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publisher,

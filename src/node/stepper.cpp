@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "surviving.h"
+
 namespace spherical_springs {
 namespace {
 
@@ -14,14 +16,16 @@ Stepper::Stepper(ros::NodeHandle node, core::Runner& runner, const Parameters& p
       pacer_(parameters.time_step, parameters.real_time_factor),
       last_tick_(ros::Time::now()),
       last_wall_tick_(ros::WallTime::now()),
-      timer_(node.createTimer(ros::Duration(kPeriod), [this](const ros::TimerEvent&) { tick(); })) {
-}
+      timer_(node.createTimer(ros::Duration(kPeriod), surviving([this] { tick(); }))) {}
 
 // Steps that do not fit into the time until the next tick are dropped: simulated time falls behind.
 void Stepper::tick() {
   const ros::Time now = ros::Time::now();
   const ros::WallTime wall_now = ros::WallTime::now();
-  const std::uint64_t due = pacer_.due((now - last_tick_).toSec());
+  // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
+  // no time gone by.
+  const double elapsed = last_tick_.isZero() ? 0 : (now - last_tick_).toSec();
+  const std::uint64_t due = pacer_.due(elapsed);
   const double wall_elapsed = (wall_now - last_wall_tick_).toSec();
   last_tick_ = now;
   last_wall_tick_ = wall_now;

@@ -64,6 +64,14 @@ TEST_P(BusyRunner, AnswersReadersRefusesChangesAndEndsAtRest) {
   runner_.change([](Simulation& s) { s.clear(); });
 }
 
+TEST_P(BusyRunner, EndsWhenClosedAndBeginsNothingMore) {
+  runner_.close();
+  work_.get();
+  EXPECT_THROW(runner_.step(1), std::runtime_error);
+  EXPECT_THROW(runner_.relax({}), std::runtime_error);
+  EXPECT_EQ(runner_.read([](const Simulation& s) { return s.scene().particles().size(); }), 100);
+}
+
 TEST(Runner, StepsExactlyWhilePausedOnly) {
   Runner runner({}, true);
   EXPECT_THROW(runner.step(3), std::runtime_error);

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <thread>
 
 #include "scenes.h"
 #include "spherical_springs/scene_file.h"
@@ -114,12 +116,88 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
       {head + R"("particles": [{"position": [1e999, 0, 0]}]})", "number overflow parsing '1e999'"},
       {head + R"("angle_springs": [{"particles": [0, 1], "stiffness": 1}]})",
        "angle_springs[0].particles[0] is 0; allowed: the id of a particle"},
+      {head + R"("particles": [], "particles": []})", "the scene has two fields 'particles'"},
+      {head + R"("particles": {"position": [1, 0, 0]}})", "the scene.particles is an object"},
+      {head + R"("time": [3]})", "the scene has no field 'time' that holds others"},
+      {head + R"("particles": [[1, 0, 0]]})", "particles[0] is not an object"},
+      {head + R"("particles": [{"position": [[1], 0, 0]}]})", "lists in lists"},
+      {head + R"("particles": [{"position": [{}, 0, 0]}]})", "lists in lists"},
+      {head + R"("particles": []} {})", "parse error at line 1, column 58"},
   };
   for (const auto& [text, reason] : table) {
     const std::string refusal = refusalOf(text);
     EXPECT_NE(refusal.find(reason), std::string::npos) << text << "\n" << refusal;
     EXPECT_EQ(refusal.find(path_.string() + " is not a scene: "), 0) << refusal;
   }
+}
+
+TEST_F(SceneFiles, AreRefusedWithTheByte) {
+  const std::string head = R"({"format": "spherical_springs scene 1", "particles": [
+    {"position": [1, 0, 0]}, )";
+  const std::string bad_values[] = {
+      R"({"position": [0, 0, 0]})", R"({"position": [1, 0, 0], "weight": 1})",
+      R"({"id": 0, "position": [1, 0, 0]})", R"({"position": [1, 0, 0], "mass": -1})"};
+  for (const std::string& bad : bad_values) {
+    const std::string refusal = refusalOf(head + bad + R"(, {"position": [1, 0, 0]}]})");
+    EXPECT_NE(
+        refusal.find("before byte " + std::to_string(head.size() + bad.size()) + ": particles[1]"),
+        std::string::npos)
+        << bad << "\n"
+        << refusal;
+  }
+  const std::string refusal = refusalOf(head);
+  EXPECT_NE(refusal.find("at byte " + std::to_string(head.size() + 1) + ": "), std::string::npos)
+      << refusal;
+}
+
+TEST_F(SceneFiles, TruncatedAnywhereAreRefused) {
+  writeScene(path_, testing::randomScene(1, 4, 2), 1);
+  std::stringstream text;
+  text << std::ifstream(path_).rdbuf();
+  const std::string whole = text.str().substr(0, text.str().rfind('}') + 1);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    EXPECT_NE(refusalOf(whole.substr(0, length)).find("at byte "), std::string::npos) << length;
+  }
+  EXPECT_EQ(refusalOf(whole), "not refused");
+}
+
+TEST_F(SceneFiles, AreRefusedAtTheFirstItemTooMany) {
+  // Neither file goes on after that item: nothing that follows has been read.
+  const std::string head = R"({"format": "spherical_springs scene 1", "particles": [{"position")";
+  SceneLimits limits;
+  limits.particles = 1;
+  std::istringstream particles(head + R"(: [1, 0, 0]}, {"position": [1, 0, 0]}, nonsense)");
+  limits.springs = 1;
+  std::istringstream springs(
+      head + R"(: [1, 0, 0]}], "angle_springs": [{}], "solid_angle_springs")" + ": [{}, nonsense");
+  for (const auto& [file, reason] :
+       {std::pair<std::istream*, std::string>{&particles, "particles in the file are 2 or more"},
+        {&springs, "springs in the file are 2 or more"}}) {
+    try {
+      readScene(*file, limits);
+      ADD_FAILURE() << "not refused: " << reason;
+    } catch (const std::invalid_argument& fault) {
+      EXPECT_NE(std::string(fault.what()).find(reason), std::string::npos) << fault.what();
+    }
+  }
+}
+
+TEST_F(SceneFiles, WrittenByManyAtOnceAreWhole) {
+  const Scene small = testing::randomScene(1, 3, 1), large = testing::randomScene(2, 300, 100);
+  std::vector<std::thread> writers;
+  for (int i = 0; i < 4; ++i) {
+    writers.emplace_back([&, i] {
+      for (int j = 0; j < 10; ++j) writeScene(path_, i % 2 ? small : large, 0);
+    });
+  }
+  for (int i = 0; i < 50; ++i) {
+    if (!fs::exists(path_)) continue;
+    const std::size_t particles = readScene(path_, {}).scene.particles().size();
+    EXPECT_TRUE(particles == 3 || particles == 300) << particles;
+  }
+  for (std::thread& writer : writers) writer.join();
+  readScene(path_, {});
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "nothing is left beside";
 }
 
 TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
