@@ -11,6 +11,7 @@ import time
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
+import rosgraph
 import roslib.packages
 import rospy
 from spherical_springs.srv import (
@@ -49,6 +50,14 @@ def wait_until(condition, timeout=LONG):
         if time.monotonic() > end:
             raise AssertionError('not so within %g s: %r' % (timeout, condition))
         time.sleep(0.01)
+
+
+def service_address(master, service):
+    """Where a service is to be found, or None as long as the master does not know it."""
+    try:
+        return rosgraph.Master('/test', master).lookupService(service)
+    except rosgraph.MasterError:
+        return None
 
 
 class Refused(Exception):
@@ -144,6 +153,10 @@ class NodeProcess:
     def __enter__(self):
         return self
 
+    @property
+    def pid(self):
+        return self._process.pid
+
     def __exit__(self, *_):
         self.stop()
         self._process.kill()
@@ -154,8 +167,17 @@ class NodeProcess:
 
     def stop(self):
         """Ask it to end; return its exit code."""
-        self._process.send_signal(signal.SIGINT)
+        self.send_signal(signal.SIGINT)
         return self.exit_code()
+
+    def send_signal(self, number):
+        self._process.send_signal(number)
+
+    def kill(self):
+        """End it at once, with no chance to do anything more."""
+        self._process.kill()
+        self._process.wait()
+        self._output.close()
 
     def exit_code(self, timeout=LONG):
         """Wait for its end; None if it goes on all the same."""
