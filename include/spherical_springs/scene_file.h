@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <istream>
+#include <ostream>
 
 #include "spherical_springs/scene.h"
 
@@ -28,5 +29,8 @@ SceneFile readScene(std::istream& in, SceneLimits limits);
 /// a file `path`.part* behind.
 /// @throw std::runtime_error when it cannot be written.
 void writeScene(const std::filesystem::path& path, const Scene& scene, double time);
+
+/// The same to a stream, whose state tells whether it succeeded.
+void writeScene(std::ostream& out, const Scene& scene, double time);
 
 }  // namespace spherical_springs::core

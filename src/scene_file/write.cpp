@@ -77,18 +77,22 @@ fs::path partOf(const fs::path& path) {
 
 }  // namespace
 
+void writeScene(std::ostream& out, const Scene& scene, double time) {
+  out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << Json(time).dump();
+  writeItems(out, "particles", scene.particles());
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    writeItems(out, Spring::kTable, scene.springs<Spring>());
+  });
+  out << "}\n";
+}
+
 void writeScene(const fs::path& path, const Scene& scene, double time) {
   const fs::path part = partOf(path);
   try {
     std::ofstream out(part, std::ios::binary | std::ios::trunc);
     if (!out) failTo("write", part);
-    out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << Json(time).dump();
-    writeItems(out, "particles", scene.particles());
-    forEachKind([&](auto kind) {
-      using Spring = typename decltype(kind)::type;
-      writeItems(out, Spring::kTable, scene.springs<Spring>());
-    });
-    out << "}\n";
+    writeScene(out, scene, time);
     out.close();
     if (!out) failTo("write", part);
     flushToDisk(part);

@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <new>
 #include <sstream>
@@ -32,8 +30,6 @@ extern "C" void* malloc(std::size_t size) {
 namespace spherical_springs::core {
 namespace {
 
-namespace fs = std::filesystem;
-
 SpringLists springsOf(const Scene& scene) {
   SpringLists springs;
   forEachKind([&](auto kind) {
@@ -58,14 +54,12 @@ class OutOfMemory : public ::testing::Test {
  protected:
   using Change = std::function<void(Simulation&)>;
 
-  void TearDown() override { fs::remove(path_); }
-
   /// Everything that a scene is, to the last bit, and the next ids.
   std::string bitsOf(const Simulation& simulation) {
     std::ostringstream text;
     for (const Scene& scene : {simulation.scene(), simulation.presentScene()}) {
-      writeScene(path_, scene, simulation.state().time);
-      text << std::ifstream(path_).rdbuf() << scene.particles().nextId();
+      writeScene(text, scene, simulation.state().time);
+      text << scene.particles().nextId();
       forEachKind([&](auto kind) {
         text << ' ' << scene.springs<typename decltype(kind)::type>().nextId();
       });
@@ -98,8 +92,6 @@ class OutOfMemory : public ::testing::Test {
   }
 
   const Scene random_ = testing::randomScene(1, 10, 15, 0.1, 1);
-  const fs::path path_ =
-      fs::temp_directory_path() / ("spherical_springs_memory_" + std::to_string(::getpid()));
 };
 
 TEST_F(OutOfMemory, WhileParticlesAreAdded) {

@@ -1,0 +1,121 @@
+// Everything that clients, timers and topics do with a runner, at once; scripts/thread_sanitizer
+// runs it under ThreadSanitizer too.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+
+#include "scenes.h"
+#include "spherical_springs/measures.h"
+#include "spherical_springs/runner.h"
+
+namespace spherical_springs::core {
+namespace {
+
+class Concurrency : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Scene scene = testing::randomScene(1, 60, 80, 0.1, 1);
+    SpringLists springs;
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      const auto& items = scene.springs<Spring>().items();
+      springs.get<Spring>().assign(items.begin(), items.end());
+    });
+    runner_.change([&](Simulation& s) {
+      s.addParticles(scene.particles().items());
+      s.addSprings(springs);
+    });
+  }
+
+  /// Calls many times, on a thread; what is refused meanwhile is refused.
+  void keepCalling(const std::function<void()>& call) {
+    constexpr int kTimes = 150;
+    clients_.emplace_back([=] {
+      for (int i = 0; i < kTimes; ++i) {
+        try {
+          call();
+        } catch (const std::runtime_error&) {
+          ++refused_;
+        }
+      }
+    });
+  }
+
+  void join() {
+    for (std::thread& client : clients_) client.join();
+  }
+
+  Runner runner_{Simulation::Settings(), true};  // one thread for each loop, unless set otherwise
+  std::vector<std::thread> clients_;
+  std::atomic<int> refused_{0};
+};
+
+TEST_F(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
+  // A topic and the status.
+  keepCalling([this] {
+    const auto now = runner_.snapshot();
+    measure(now.system, IntegrationMethod::verlet, 1e-3, now.state, *now.account);
+  });
+  keepCalling([this] {
+    const auto now = runner_.snapshot();
+    ASSERT_TRUE(std::isfinite(energies(*now.system, now.state).total()));
+  });
+  // The timer.
+  keepCalling([this] { runner_.advance(20, 0.01); });
+  // Clients.
+  keepCalling([this] { runner_.read([](const Simulation& s) { return s.presentScene(); }); });
+  for (const bool running : {false, true}) {
+    keepCalling([this, running] { runner_.setRunning(running); });
+  }
+  keepCalling([this] {
+    const auto ids = runner_.change([](Simulation& s) {
+      return s.addParticles({testing::particleAt({1, 2, 3})});
+    });
+    runner_.change([&](Simulation& s) { s.removeParticles(ids); });
+  });
+  keepCalling([this] { runner_.change([](Simulation& s) { s.reset(); }); });
+  keepCalling([this] { runner_.step(1000); });
+  for (const auto method : {RelaxationMethod::newton, RelaxationMethod::dynamics}) {
+    keepCalling([this, method] {
+      RelaxationOptions options;
+      options.method = method;
+      options.max_time = 0.05;
+      runner_.relax(options);
+    });
+  }
+  for (int i = 0; i < 2; ++i) {
+    keepCalling([this] {
+      runner_.cancel();
+      std::this_thread::yield();
+    });
+  }
+  join();
+
+  EXPECT_GT(refused_, 0) << "nothing ever met";
+  EXPECT_EQ(runner_.snapshot().activity, Activity::none);
+  EXPECT_TRUE(runner_.snapshot().state.positions.allFinite());
+}
+
+TEST_F(Concurrency, OfClosingAndAllElse) {
+  runner_.setRunning(false);
+  for (int i = 0; i < 2; ++i) {
+    keepCalling([this] { runner_.step(~std::uint64_t(0)); });
+    keepCalling([this] {
+      RelaxationOptions options;
+      options.method = RelaxationMethod::dynamics;
+      options.tolerance = 1e-300;
+      runner_.relax(options);
+    });
+    keepCalling([this] { runner_.snapshot(); });
+  }
+  while (runner_.snapshot().activity == Activity::none) std::this_thread::yield();
+  runner_.close();
+  join();
+  EXPECT_EQ(runner_.snapshot().activity, Activity::none);
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
