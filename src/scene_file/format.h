@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 namespace spherical_springs::core {
 
@@ -12,7 +12,7 @@ constexpr const char* kSceneFormat = "spherical_springs scene 1";
 
 [[noreturn]] inline void failTo(const char* what, const std::filesystem::path& path) {
   throw std::runtime_error(std::string("cannot ") + what + " " + path.string() + ": " +
-                           std::strerror(errno));
+                           std::system_category().message(errno));
 }
 
 }  // namespace spherical_springs::core

@@ -95,6 +95,16 @@ inline Points positionsOf(const Scene& scene) {
   return positions;
 }
 
+inline SpringLists springsOf(const Scene& scene) {
+  SpringLists springs;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& items = scene.springs<Spring>().items();
+    springs.get<Spring>().assign(items.begin(), items.end());
+  });
+  return springs;
+}
+
 inline Scene sceneOf(const std::vector<Particle>& particles, const SpringLists& springs) {
   Scene scene;
   scene.addParticles(particles);

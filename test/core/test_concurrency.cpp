@@ -18,15 +18,9 @@ class Concurrency : public ::testing::Test {
  protected:
   void SetUp() override {
     const Scene scene = testing::randomScene(1, 60, 80, 0.1, 1);
-    SpringLists springs;
-    forEachKind([&](auto kind) {
-      using Spring = typename decltype(kind)::type;
-      const auto& items = scene.springs<Spring>().items();
-      springs.get<Spring>().assign(items.begin(), items.end());
-    });
     runner_.change([&](Simulation& s) {
       s.addParticles(scene.particles().items());
-      s.addSprings(springs);
+      s.addSprings(testing::springsOf(scene));
     });
   }
 

@@ -30,16 +30,6 @@ extern "C" void* malloc(std::size_t size) {
 namespace spherical_springs::core {
 namespace {
 
-SpringLists springsOf(const Scene& scene) {
-  SpringLists springs;
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& items = scene.springs<Spring>().items();
-    springs.get<Spring>().assign(items.begin(), items.end());
-  });
-  return springs;
-}
-
 SpringIds allIds(const Scene& scene) {
   SpringIds ids;
   forEachKind([&](auto kind) {
@@ -74,7 +64,7 @@ class OutOfMemory : public ::testing::Test {
     for (bool succeeded = false; !succeeded; ++failures) {
       Simulation simulation({});
       simulation.addParticles(random_.particles().items());
-      simulation.addSprings(springsOf(random_));
+      simulation.addSprings(testing::springsOf(random_));
       for (int i = 0; i < 5; ++i) simulation.step();
       const std::string before = bitsOf(simulation);
       try {
@@ -109,11 +99,11 @@ TEST_F(OutOfMemory, WhileParticlesAreRemoved) {
 }
 
 TEST_F(OutOfMemory, WhileSpringsAreAdded) {
-  expectAllOrNothing([this](Simulation& s) { s.addSprings(springsOf(random_)); });
+  expectAllOrNothing([this](Simulation& s) { s.addSprings(testing::springsOf(random_)); });
 }
 
 TEST_F(OutOfMemory, WhileSpringsAreSet) {
-  SpringLists stiffer = springsOf(random_);
+  SpringLists stiffer = testing::springsOf(random_);
   stiffer.get<AngleSpring>()[4].stiffness = 7;
   const SpringIds ids = allIds(random_);
   expectAllOrNothing([&](Simulation& s) { s.setSprings(ids, stiffer); });

@@ -10,15 +10,9 @@ namespace spherical_springs::core {
 namespace {
 
 void fill(Runner& runner, const Scene& scene) {
-  SpringLists springs;
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& items = scene.springs<Spring>().items();
-    springs.get<Spring>().assign(items.begin(), items.end());
-  });
   runner.change([&](Simulation& s) {
     s.addParticles(scene.particles().items());
-    s.addSprings(springs);
+    s.addSprings(testing::springsOf(scene));
   });
 }
 

@@ -67,6 +67,16 @@ TEST(SceneParticles, ComeNormalised) {
   EXPECT_EQ(taken.mass, 1);
 }
 
+TEST(SceneParticles, HoweverFastTurnAboutNoAxisThroughThemselves) {
+  for (const double speed : {1., 1e20, 1e69, 1e100}) {
+    Particle particle = testing::particleAt({-1, -1, -1});
+    particle.angular_velocity = speed * Vector3(1, 1, 1);
+    Scene scene;
+    scene.addParticles({particle});
+    EXPECT_EQ(scene.particles().item(0).angular_velocity, Vector3(0, 0, 0)) << speed;
+  }
+}
+
 TEST(SceneParticles, TakeTheirSpringsWithThem) {
   Scene scene = octant();
   SpringLists springs;

@@ -39,13 +39,7 @@ TEST_F(SceneFiles, ReadBackToTheLastBit) {
   Simulation simulation({});
   const Scene random = testing::randomScene(1, 30, 40, 0.1, 2);
   simulation.addParticles(random.particles().items());
-  SpringLists springs;
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& items = random.springs<Spring>().items();
-    springs.get<Spring>().assign(items.begin(), items.end());
-  });
-  simulation.addSprings(springs);
+  simulation.addSprings(testing::springsOf(random));
   simulation.removeParticles({3, 29});
   for (int i = 0; i < 1000; ++i) simulation.step();
 

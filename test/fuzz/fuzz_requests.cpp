@@ -2,6 +2,7 @@
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -14,8 +15,14 @@ using namespace spherical_springs::core;
 
 namespace {
 
-constexpr int kMostRequests = 24;
+constexpr int kMostRequests = 16;
 constexpr std::size_t kMostAtOnce = 6;
+
+/// Tells at the end how many requests there were.
+struct Counts {
+  ~Counts() { std::fprintf(stderr, "requests: %llu, refused: %llu\n", requests, refused); }
+  unsigned long long requests = 0, refused = 0;
+} counts;
 
 class Requests {
  public:
@@ -24,10 +31,11 @@ class Requests {
 
   void run() {
     for (int i = 0; i < kMostRequests && data_.remaining_bytes() > 0; ++i) {
+      ++counts.requests;
       try {
         one();
       } catch (const std::invalid_argument&) {
-        // Refused.
+        ++counts.refused;
       }
       fuzzing::requireSound(simulation_);
     }
