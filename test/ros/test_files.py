@@ -132,6 +132,17 @@ class TestPaths(FileTest):
         self.assertEqual(['there.json'], os.listdir(outside))
         self.assertEqual(content, open(there).read())
 
+    def test_links_to_what_is_not_there_yet(self):
+        outside = tempfile.mkdtemp(dir=os.path.dirname(self.directory))
+        self.addCleanup(shutil.rmtree, outside)
+        os.symlink(os.path.join(outside, 'new.json'), self.path('file_link.json'))
+        os.symlink(os.path.join(outside, 'new'), self.path('directory_link'))
+        self.assert_refused('', 'load_scene', 'file_link.json')
+        self.assert_refused('', 'save_scene', 'directory_link/new.json')
+        self.node.save_scene('file_link.json')  # takes the place of the link
+        self.assertFalse(os.path.islink(self.path('file_link.json')))
+        self.assertEqual([], os.listdir(outside))
+
     def test_no_file(self):
         os.mkdir(self.path('folder'))
         for path in ('', '.', '..', '/', 'folder', 'folder/..'):
