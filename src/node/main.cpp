@@ -58,6 +58,8 @@ int main(int argc, char** argv) {
   try {
     spherical_springs::run();
   } catch (const std::exception& fault) {
+    // Told to end while it starts, it gets no parameters from ROS any more.
+    if (ros::isShuttingDown()) return 0;
     ROS_FATAL("%s", fault.what());
     return 1;
   }
