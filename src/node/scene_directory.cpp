@@ -9,7 +9,7 @@ namespace spherical_springs {
 namespace fs = std::filesystem;
 
 SceneDirectory::SceneDirectory(const std::string& directory) : directory_(directory) {
-  const char* home = std::getenv("HOME");
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   if (directory == "~" || directory.rfind("~/", 0) == 0) {
     directory_ = fs::path(home != nullptr ? home : "/") /
                  directory.substr(std::min<std::size_t>(2, directory.size()));
@@ -25,7 +25,7 @@ fs::path SceneDirectory::inside(const std::string& path) const {
     throw std::invalid_argument("path has a zero byte; allowed: the name of a file");
   }
   if (path.empty()) refuse("the name of a file");
-  const fs::path whole = fs::weakly_canonical(directory_ / path);
+  fs::path whole = fs::weakly_canonical(directory_ / path);
   const fs::path from_here = whole.lexically_relative(directory_);
   if (from_here.empty() || *from_here.begin() == "..") {
     refuse("files inside " + directory_.string());

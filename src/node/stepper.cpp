@@ -11,7 +11,7 @@ constexpr double kPeriod = 0.01;  // [s]
 
 }  // namespace
 
-Stepper::Stepper(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters)
+Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters)
     : runner_(runner),
       pacer_(parameters.time_step, parameters.real_time_factor),
       last_tick_(ros::Time::now()),

@@ -13,7 +13,7 @@ namespace spherical_springs {
 class Stepper {
  public:
   /// `runner` must live longer.
-  Stepper(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters);
+  Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters);
 
  private:
   void tick();
