@@ -23,7 +23,7 @@ Ids Scene::addParticles(std::vector<Particle> particles) {
 
 std::vector<std::size_t> Scene::setParticles(const Ids& ids, std::vector<Particle> particles) {
   requireSameLength("ids", ids.size(), "particles", particles.size());
-  const auto indices = indicesOf(particles_, ids, "ids", "a particle");
+  auto indices = indicesOf(particles_, ids, "ids", "a particle");
   checkParticles(particles);
   for (std::size_t i = 0; i < indices.size(); ++i) particles_.item(indices[i]) = particles[i];
   return indices;
