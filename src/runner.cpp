@@ -102,7 +102,8 @@ struct Runner::Work {
   bool abandoned = false;
   std::exception_ptr fault;
 
-  void run(const System& system, const Points& positions, RelaxationOptions options) {
+  void run(Relaxer& relaxer, const System& system, const Points& positions,
+           RelaxationOptions options) {
     options.go_on = [this](const RelaxationProgress& progress) {
       const std::lock_guard<std::mutex> lock(mutex);
       best = progress.best;
@@ -110,7 +111,7 @@ struct Runner::Work {
       return !abandoned;
     };
     try {
-      RelaxationResult result = core::relax(system, positions, options);
+      RelaxationResult result = relaxer.relax(system, positions, options);
       const std::lock_guard<std::mutex> lock(mutex);
       best = std::move(result);
     } catch (...) {
@@ -126,13 +127,18 @@ Runner::~Runner() {
   if (worker_.joinable()) worker_.join();
 }
 
+Runner::Beginning Runner::beginning() {
+  const Lock lock(mutex_);
+  return {simulation_.state(), simulation_.system(), simulation_.begunAccount()};
+}
+
 RelaxationResult Runner::relax(const RelaxationOptions& options) {
   const Busy busy(*this, Activity::relaxing);
-  Snapshot start = snapshot();
   if (worker_.joinable()) worker_.join();  // one that was cancelled may not have ended yet
+  auto [start, system, account] = beginning();
   const auto work = std::make_shared<Work>();
-  worker_ = std::thread([work, system = start.system, positions = start.state.positions, options] {
-    work->run(*system, positions, options);
+  worker_ = std::thread([this, work, system = system, positions = start.positions, options] {
+    work->run(relaxer_, *system, positions, options);
   });
 
   std::unique_lock<std::mutex> lock(work->mutex);
@@ -142,7 +148,7 @@ RelaxationResult Runner::relax(const RelaxationOptions& options) {
   }
   if (work->fault) {
     const Lock simulation_lock(mutex_);
-    simulation_.restore(std::move(start.state), start.account);
+    simulation_.restore(std::move(start), account);
     std::rethrow_exception(work->fault);
   }
   RelaxationResult result = work->best;
@@ -150,7 +156,7 @@ RelaxationResult Runner::relax(const RelaxationOptions& options) {
     work->abandoned = true;
     result.message = "cancelled; largest torque " + toText(result.max_torque) + " N m";
   }
-  if (result.positions.cols() == 0) result.positions = start.state.positions;
+  if (result.positions.cols() == 0) result.positions = start.positions;
   const Lock simulation_lock(mutex_);
   simulation_.settle(result.positions);
   return result;

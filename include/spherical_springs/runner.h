@@ -93,7 +93,15 @@ class Runner {
   class Busy;
   struct Work;
 
+  /// What a relaxation starts from, and goes back to if it fails.
+  struct Beginning {
+    State state;
+    std::shared_ptr<const System> system;
+    std::shared_ptr<Account> account;
+  };
+
   void requireIdle() const;
+  Beginning beginning();
   void show(const RelaxationResult& best, double fraction);
   std::uint64_t stepForASlice(std::uint64_t most);
 
@@ -105,7 +113,9 @@ class Runner {
   double relax_progress_ = 0;
   double step_wall_time_ = 0;
   std::atomic<bool> cancelled_{false};
-  std::thread worker_;  // used by the one caller whose relaxation is under way
+  // Used by the one caller whose relaxation is under way, and by its worker.
+  Relaxer relaxer_;
+  std::thread worker_;
 };
 
 }  // namespace spherical_springs::core

@@ -54,6 +54,7 @@ class Simulation {
 
   std::shared_ptr<const System> system();
   std::shared_ptr<Account> account();
+  std::shared_ptr<Account> begunAccount() const { return account_; }  ///< none before first use
 
  private:
   void begin(State start);

@@ -116,9 +116,13 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.step_wall_time = snapshot.step_wall_time;
   message.relax_progress = snapshot.relax_progress;
 
-  const auto measures =
-      core::measure(snapshot.system, core::integrationMethod(parameters_.integrator),
-                    parameters_.time_step, state, *snapshot.account);
+  // What a step would do means nothing while a relaxation wants the processors.
+  if (snapshot.activity != core::Activity::relaxing) {
+    measures_ = core::measure(snapshot.system, core::integrationMethod(parameters_.integrator),
+                              parameters_.time_step, state, *snapshot.account);
+  }
+  core::Measures measures = measures_;
+  measures.max_torque = core::maxTorque(*snapshot.system, state);
   message.stable_time_step = std::min(Parameters::kLongestTimeStep, measures.stable_time_step);
   message.local_error = measures.local_error;
   message.energy_error = measures.energy_error;

@@ -54,6 +54,7 @@ class Publisher {
   ros::WallTime last_status_;
   double last_simulated_ = 0;
   Lag lag_;
+  core::Measures measures_;
 
   std::mutex mutex_;
   std::string message_;  // guarded by mutex_

@@ -195,14 +195,11 @@ void Services::step(const Step::Request& request, Step::Response& response) {
 
 void Services::relax(const Relax::Request& request, Relax::Response& response) {
   const auto begin = ros::WallTime::now();
-  if (request.keep_orientation) {
-    throw std::invalid_argument(
-        "keep_orientation is true; allowed: false (relaxing without folds is not there yet)");
-  }
   core::RelaxationOptions options;
   options.method = core::relaxationMethod(request.method);
   options.tolerance = request.tolerance;
   options.max_time = request.max_time;
+  options.keep_orientation = request.keep_orientation;
   publisher_.statusChanged();
   const auto result = runner_.relax(options);
   response.converged = result.converged;

@@ -6,7 +6,7 @@ import numpy as np
 from node_client import NodeTest, Refused
 from scenes import (
     add_knot, add_mixed_octant, add_octant, angle, angle_spring, angular_velocities, exact,
-    particle, positions)
+    particle, positions, solid_angle_spring)
 
 METHODS = ('newton', 'dynamics')
 
@@ -121,13 +121,26 @@ class TestEnd(NodeTest):
         self.assertEqual(0, np.abs(angular_velocities(self.node.get_scene())).max())
 
 
+    def test_no_triangle_folds_where_orientation_is_kept(self):
+        corners = [particle(p, pinned=True) for p in ((1, -0.3, 0), (1, 0.3, 0), (1, 0, -0.3))]
+        a, b, goal, c = self.node.add_particles([*corners, particle((1, 0.02, 0.3))]).ids
+        self.node.add_springs(
+            angle_springs=[angle_spring([c, goal], 1, rest_angle=0)],
+            solid_angle_springs=[solid_angle_spring([a, b, c], 1e-3, rest_solid_angle=0.08)])
+        outcome = self.node.relax(keep_orientation=True)
+        self.assertFalse(outcome.converged)
+        self.assertIn('would fold', outcome.message)
+        self.assertGreater(positions(self.node.get_scene())[3][2], 0)
+        self.assertTrue(self.node.relax().converged)
+        self.assertLess(positions(self.node.get_scene())[3][2], 0)
+
+
 class TestRefusals(NodeTest):
     def test_bad_requests(self):
         add_octant(self.node, damping=0.5)
         self.node.step(50)
         before = self.node.get_scene()
         for fields, words in (({'method': 'magic'}, ('method', 'magic', 'allowed')),
-                              ({'keep_orientation': True}, ('keep_orientation', 'allowed')),
                               ({'tolerance': -1}, ('tolerance', '-1', 'allowed')),
                               ({'tolerance': math.nan}, ('tolerance', 'nan', 'allowed')),
                               ({'max_time': -2}, ('max_time', '-2', 'allowed')),
