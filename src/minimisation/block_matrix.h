@@ -84,12 +84,14 @@ template <>
 inline Eigen::Vector2f rowProduct(const Graph& graph, const Blocks<float, 2>& values,
                                   const VectorOf<float>& x, std::uint32_t begin,
                                   std::uint32_t end) {
+  using Two = double __attribute__((vector_size(16)));
   using Order = std::int32_t __attribute__((vector_size(16)));
   FourFloats sum = {};
   for (std::uint32_t e = begin; e < end; ++e) {
-    FourFloats factors = {};
-    std::memcpy(&factors, x.data() + 2 * graph.neighbours[e], 2 * sizeof(float));
-    factors = __builtin_shuffle(factors, Order{0, 0, 1, 1});
+    double pair;  // of floats
+    std::memcpy(&pair, x.data() + 2 * graph.neighbours[e], sizeof(pair));
+    const auto factors =
+        __builtin_shuffle(reinterpret_cast<FourFloats>(Two{pair, pair}), Order{0, 0, 1, 1});
     sum += load(values[e].data()) * factors;
   }
   return {sum[0] + sum[2], sum[1] + sum[3]};
