@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "workers.h"
+
 namespace spherical_springs::core {
 
 /// The number of threads worth their start for a loop over `count` springs or particles.
@@ -13,15 +15,20 @@ inline int worthwhileThreads(std::ptrdiff_t count, int threads) {
   return count < kTooShort ? 1 : threads;
 }
 
-/// Calls `body(i)` for i from 0 to `count` - 1 on exactly `threads` threads.
+/// Calls `body(i)` for i from 0 to `count` - 1 on up to `threads` threads.
 template <class Body>
 void forOnThreads(std::ptrdiff_t count, int threads, const Body& body) {
-  if (threads == 1) {  // without the thread library's own test for it
+  constexpr std::ptrdiff_t kPartsEach = 4;  // of which a thread may leave some to others
+  const std::ptrdiff_t parts =
+      threads > 1 ? std::min({count, kPartsEach * threads, Workers::kMostParts}) : 1;
+  if (parts <= 1) {
     for (std::ptrdiff_t i = 0; i < count; ++i) body(i);
     return;
   }
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t i = 0; i < count; ++i) body(i);
+  Workers::shared().run(threads, parts, [&](std::ptrdiff_t part) {
+    const std::ptrdiff_t end = count * (part + 1) / parts;
+    for (std::ptrdiff_t i = count * part / parts; i < end; ++i) body(i);
+  });
 }
 
 /// Calls `body(i)` for i from 0 to `count` - 1; bodies must not write to the same place.

@@ -72,15 +72,16 @@ std::string nearlyUndefinedSpring(const System& system, const Points& positions)
 /// One relaxation under way.
 class Relaxation {
  public:
-  /// `newton` is to fit the system.
+  /// `newton` is to fit the system; `at_start`: whether it is at `positions` already.
   Relaxation(const System& system, const Points& positions, const RelaxationOptions& options,
-             Newton& newton)
+             Newton& newton, bool at_start)
       : system_(system),
         options_(options),
         tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
         start_(positions),
         guard_(system),
         newton_(newton) {
+    at_start = at_start && options.method == RelaxationMethod::newton;
     OrientationGuard* const guard = options.keep_orientation ? &guard_ : nullptr;
     newton_.keepOrientation(guard);
     if (options.method == RelaxationMethod::dynamics) {
@@ -88,7 +89,7 @@ class Relaxation {
     }
     descent_ = fire_ ? static_cast<Descent*>(fire_.get()) : &newton_;
     newton_.aimAt(tolerance_);
-    descent_->place(positions);
+    if (!at_start) descent_->place(positions);
     first_torque_ = descent_->maxTorque();
     result_.energy_before = descent_->value();
     keep();
@@ -231,12 +232,17 @@ RelaxationResult Relaxer::relax(const System& system, const Points& positions,
   requireInside(Range{0, kLargest, "0 (the default) to 1e30 [N m]"}, options.tolerance,
                 "tolerance");
   requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
-  if (newton_ && newton_->fits(system)) {
-    newton_->take(system);
+  // Only from the very place where the last one ended, so that results do not depend on what was
+  // relaxed before from elsewhere.
+  const bool goes_on = newton_ && positions == last_end_ && newton_->fits(system);
+  if (goes_on) {
+    newton_->goOn(system, positions);
   } else {
     newton_ = std::make_unique<Newton>(system, positions);
   }
-  return Relaxation(system, positions, options, *newton_).run();
+  RelaxationResult result = Relaxation(system, positions, options, *newton_, goes_on).run();
+  last_end_ = result.positions;
+  return result;
 }
 
 RelaxationResult relax(const System& system, const Points& positions,

@@ -50,8 +50,9 @@ double defaultTolerance(const System& system);
 
 class Newton;
 
-/// Relaxes one system after another. What has been prepared for one serves the next, if the same
-/// springs join the same particles, whatever their rest and stiffness. For one thread at a time.
+/// Relaxes one system after another. One that starts where the last one ended, with the same
+/// springs but for their rest and stiffness, goes on with what was prepared for that. For one
+/// thread at a time.
 class Relaxer {
  public:
   Relaxer();
@@ -66,6 +67,7 @@ class Relaxer {
 
  private:
   std::unique_ptr<Newton> newton_;
+  Points last_end_;
 };
 
 /// The same, once.

@@ -26,10 +26,9 @@ struct Schedule {
   template <class Body>
   void forEach(int threads, const Body& body) const {
     const std::ptrdiff_t colours = static_cast<std::ptrdiff_t>(first.size()) - 1;
-#pragma omp parallel num_threads(threads) if (threads > 1)
     for (std::ptrdiff_t c = 0; c < colours; ++c) {
-#pragma omp for schedule(static)
-      for (std::uint32_t b = first[c]; b < first[c + 1]; ++b) body(blocks[b]);
+      forOnThreads(first[c + 1] - first[c], threads,
+                   [&](std::ptrdiff_t b) { body(blocks[first[c] + b]); });
     }
   }
 
@@ -37,10 +36,9 @@ struct Schedule {
   template <class Body>
   void forEachBackward(int threads, const Body& body) const {
     const std::ptrdiff_t colours = static_cast<std::ptrdiff_t>(first.size()) - 1;
-#pragma omp parallel num_threads(threads) if (threads > 1)
     for (std::ptrdiff_t c = colours - 1; c >= 0; --c) {
-#pragma omp for schedule(static)
-      for (std::uint32_t b = first[c]; b < first[c + 1]; ++b) body(blocks[b]);
+      forOnThreads(first[c + 1] - first[c], threads,
+                   [&](std::ptrdiff_t b) { body(blocks[first[c] + b]); });
     }
   }
 };

@@ -33,12 +33,23 @@ Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd in
 void Newton::place(const Points& positions) {
   energy_.place(positions);
   model_ = Model::definite;
+  forgetSteps();
+  scale_.setZero(energy_.freeCount());
+  evaluate();
+}
+
+void Newton::goOn(const System& system, const Points& positions) {
+  energy_.take(system);
+  energy_.carry(positions);
+  forgetSteps();
+  evaluate();
+}
+
+void Newton::forgetSteps() {
   shift_ = kLeastShift;
   radius_ = kInfinity;
-  scale_.setZero(energy_.freeCount());
   hold_.setZero(energy_.freeCount());
   iterations_ = calm_iterations_ = 0;
-  evaluate();
 }
 
 /// Energy, gradient and the Hessian that the model asks for.

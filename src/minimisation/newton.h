@@ -14,9 +14,11 @@ class Newton : public Descent {
   /// `positions`: where particles are about; `inertia`: as TangentEnergy has it.
   Newton(const System& system, const Points& positions, Eigen::VectorXd inertia = {});
 
-  /// As of TangentEnergy; what has been prepared for earlier systems goes on serving.
+  /// Whether `goOn` may be called.
   bool fits(const System& system) const { return energy_.fits(system); }
-  void take(const System& system) { energy_.take(system); }
+  /// Takes a system that fits and differs little, and starts near where the particles are, with all
+  /// that has been prepared before.
+  void goOn(const System& system, const Points& positions);
   void setTargets(const Points& targets) { energy_.setTargets(targets); }
 
   /// The torque [N m] that is wanted, so that no step goes further for nothing.
@@ -42,6 +44,7 @@ class Newton : public Descent {
   enum class Model { definite, exact, indefinite };
   enum class Trial { accepted, rejected, exhausted };
 
+  void forgetSteps();
   void evaluate();
   ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
   double tolerance() const;

@@ -142,6 +142,17 @@ void TangentEnergy::take(const System& system) {
   });
 }
 
+namespace {
+
+/// The frame turned as little as leaves it tangent at `p`.
+void carryFrame(const Vector3& p, TangentFrame& frame) {
+  const Vector3 x = frame.col(0);
+  frame.col(0) = (x - x.dot(p) * p).normalized();
+  frame.col(1) = p.cross(frame.col(0));
+}
+
+}  // namespace
+
 void TangentEnergy::place(const Points& positions) {
   points_.resize(particles_.size());
   frames_.resize(particles_.size());
@@ -149,6 +160,18 @@ void TangentEnergy::place(const Points& positions) {
     points_[n] = positions.col(particles_[n]);
     frames_[n] = tangentFrame(points_[n]);
   });
+  findPinnedValue();
+}
+
+void TangentEnergy::carry(const Points& positions) {
+  parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
+    points_[n] = positions.col(particles_[n]);
+    carryFrame(points_[n], frames_[n]);
+  });
+  findPinnedValue();
+}
+
+void TangentEnergy::findPinnedValue() {
   pinned_value_ = 0;
   forEachKind([&](auto kind) {
     const auto& compiled = compiled_.get<typename decltype(kind)::type>();
@@ -167,9 +190,7 @@ void TangentEnergy::move(const Eigen::VectorXd& step) {
   parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
     TangentFrame& frame = frames_[n];
     points_[n] = (points_[n] + frame * step.segment<2>(2 * n)).normalized();
-    const Vector3 x = frame.col(0);
-    frame.col(0) = (x - x.dot(points_[n]) * points_[n]).normalized();
-    frame.col(1) = points_[n].cross(frame.col(0));
+    carryFrame(points_[n], frame);
   });
 }
 

@@ -34,6 +34,8 @@ class TangentEnergy {
 
   /// Puts the particles somewhere; `evaluate` is to follow.
   void place(const Points& positions);
+  /// The same, with frames carried along from where the particles were.
+  void carry(const Points& positions);
   void setTargets(const Points& targets);
 
   /// Moves the free particles by tangent vectors [rad] and back onto the sphere along their
@@ -83,6 +85,7 @@ class TangentEnergy {
   template <class Spring>
   double addOne(const Compiled<Spring>& compiled, std::size_t spring, Curvature curvature);
   void addInertia(Curvature curvature);
+  void findPinnedValue();
 
   int threads_;
   BlockPattern pattern_;
