@@ -1,0 +1,117 @@
+// What the result of a relaxation must not depend on.
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+
+#include "relaxation_scenes.h"
+#include "spherical_springs/relaxation.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using testing::positionsOf;
+
+RelaxationOptions toTolerance(double tolerance) {
+  RelaxationOptions options;
+  options.tolerance = tolerance;
+  return options;
+}
+
+RelaxationResult relaxed(const Scene& scene, const Points& positions, int threads = 1) {
+  System::Options options;
+  options.threads = threads;
+  return relax(System(scene, options), positions, toTolerance(1e-10));
+}
+
+/// The angle of the rotation that brings `after` closest to `before`.
+double netTurn(const Points& before, const Points& after) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(after * before.transpose(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d turn = svd.matrixV() * svd.matrixU().transpose();
+  return (turn - Eigen::Matrix3d::Identity()).norm() / std::sqrt(2);
+}
+
+TEST(Relaxed, HasNotTurnedAsAWhole) {
+  for (const Scene& scene : {testing::membraneScene(3), testing::chainScene(3, 60, 0)}) {
+    const Points start = positionsOf(scene);
+    const auto result = relaxed(scene, start);
+    EXPECT_GT((result.positions - start).norm(), 0.1);
+    EXPECT_LT(netTurn(start, result.positions), 1e-12);
+  }
+}
+
+TEST(Relaxed, FromARotatedStartIsTheSameRotated) {
+  const Scene scene = testing::membraneScene(3);
+  const Points start = positionsOf(scene);
+  const auto expected = relaxed(scene, start);
+  ASSERT_TRUE(expected.converged) << expected.message;
+  for (const double angle : {1e-3, 1., 3.}) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(angle, Vector3(1, -2, 3).normalized()).toRotationMatrix();
+    const auto result = relaxed(scene, (turn * start).colwise().normalized());
+    EXPECT_TRUE(result.converged) << result.message;
+    EXPECT_NEAR(result.energy_after, expected.energy_after, 1e-12 * expected.energy_after);
+    EXPECT_LT((result.positions - turn * expected.positions).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_NEAR(result.iterations, expected.iterations, 2);
+  }
+}
+
+TEST(Relaxed, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
+  const Scene membrane = testing::membraneScene(4), larger = testing::membraneScene(5);
+  for (const Scene& scene : {membrane, larger}) {
+    const auto expected = relaxed(scene, positionsOf(scene), 1);
+    EXPECT_TRUE(expected.converged) << expected.message;
+    for (const int threads : {2, 3}) {
+      const auto result = relaxed(scene, positionsOf(scene), threads);
+      EXPECT_EQ(result.positions, expected.positions);
+      EXPECT_EQ(result.energy_after, expected.energy_after);
+      EXPECT_EQ(result.iterations, expected.iterations);
+    }
+  }
+}
+
+/// The scene with its angle springs' rest angles changed by up to a `share`, their stiffness
+/// multiplied by `factor` where they are odd.
+Scene changedScene(const Scene& scene, double share, double factor = 1) {
+  testing::Random random(9);
+  SpringLists springs = testing::springsOf(scene);
+  auto& arcs = springs.get<AngleSpring>();
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    arcs[i].rest_angle *= 1 + share * random.between(-1, 1);
+    if (i % 2 == 1) arcs[i].stiffness *= factor;
+  }
+  return testing::sceneOf(scene.particles().items(), springs);
+}
+
+TEST(Relaxer, WarmEndsWhereItEndsCold) {
+  for (const auto& [share, factor] : {std::pair(0.01, 1.), std::pair(0.05, 100.)}) {
+    const Scene scene = testing::membraneScene(4);
+    Relaxer relaxer;
+    const auto first = relaxer.relax(System(scene, {}), positionsOf(scene), toTolerance(1e-10));
+    ASSERT_TRUE(first.converged) << first.message;
+    const System changed(changedScene(scene, share, factor), {});
+    const auto options = toTolerance(1e-11 * changed.largestStiffness());
+    const auto warm = relaxer.relax(changed, first.positions, options);
+    const auto cold = relax(changed, first.positions, options);
+    EXPECT_TRUE(warm.converged) << warm.message;
+    EXPECT_TRUE(cold.converged) << cold.message;
+    EXPECT_NEAR(warm.energy_after, cold.energy_after, 1e-12 * cold.energy_after);
+    EXPECT_LE(warm.iterations, cold.iterations + 1);
+  }
+}
+
+TEST(Relaxer, TakesASceneOfOtherSprings) {
+  Relaxer relaxer;
+  for (const Scene& scene :
+       {testing::membraneScene(2), testing::pinnedScene(testing::membraneScene(2), {4, 5}),
+        testing::chainScene(1, 162, 0), Scene(), testing::membraneScene(2)}) {
+    const System system(scene, {});
+    const auto result = relaxer.relax(system, positionsOf(scene), {});
+    const auto expected = relax(system, positionsOf(scene), {});
+    EXPECT_EQ(result.positions, expected.positions);
+    EXPECT_EQ(result.message, expected.message);
+  }
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
