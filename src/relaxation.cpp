@@ -234,7 +234,7 @@ RelaxationResult Relaxer::relax(const System& system, const Points& positions,
   requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
   // Only from the very place where the last one ended, so that results do not depend on what was
   // relaxed before from elsewhere.
-  const bool goes_on = newton_ && positions == last_end_ && newton_->fits(system);
+  const bool goes_on = newton_ && newton_->fits(system) && positions == last_end_;
   if (goes_on) {
     newton_->goOn(system, positions);
   } else {

@@ -51,8 +51,8 @@ double defaultTolerance(const System& system);
 class Newton;
 
 /// Relaxes one system after another. One that starts where the last one ended, with the same
-/// springs but for their rest and stiffness, goes on with what was prepared for that. For one
-/// thread at a time.
+/// springs but for their rest and small changes of stiffness, goes on with what was prepared for
+/// that. For one thread at a time.
 class Relaxer {
  public:
   Relaxer();

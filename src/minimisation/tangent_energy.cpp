@@ -105,6 +105,7 @@ void TangentEnergy::compile(const System& system) {
 }
 
 bool TangentEnergy::fits(const System& system) const {
+  constexpr double kMostChange = 2;  // factor of a stiffness
   if (static_cast<std::size_t>(system.particleCount()) != particles_.size()) return false;
   for (std::size_t n = 0; n < particles_.size(); ++n) {
     if (system.pinned(particles_[n]) != (n >= freeCount())) return false;
@@ -116,9 +117,12 @@ bool TangentEnergy::fits(const System& system) const {
     const auto& springs = system.springs<Spring>();
     fits = fits && springs.size() == compiled.springs.size();
     for (std::size_t s = 0; fits && s < compiled.springs.size(); ++s) {
+      const Spring& spring = springs[compiled.sources[s]];
+      const double stiffness = unit_ * compiled.springs[s].stiffness;
+      fits = stiffness <= kMostChange * spring.stiffness &&
+             spring.stiffness <= kMostChange * stiffness;
       for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-        fits = fits && numbers_[springs[compiled.sources[s]].particles[j]] ==
-                           compiled.springs[s].particles[j];
+        fits = fits && numbers_[spring.particles[j]] == compiled.springs[s].particles[j];
       }
     }
   });

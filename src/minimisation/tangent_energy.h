@@ -22,7 +22,7 @@ class TangentEnergy {
   /// from a target; none in a relaxation.
   TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia = {});
 
-  /// Whether the same springs, whatever their rest and stiffness, join the same particles in
+  /// Whether the same springs, whatever their rest and about as stiff, join the same particles in
   /// `system`, and the same are pinned.
   bool fits(const System& system) const;
   /// Takes rest and stiffness from a system that fits.
