@@ -32,8 +32,9 @@ struct SpringFields {
 struct HessianArrays {
   static constexpr std::uint32_t kNotStored = ~0u;
 
-  const double* points;      ///< 3 a particle, unit vectors
-  const double* frames;      ///< 6 a particle: two tangent vectors
+  static constexpr std::size_t kPlaceSize = 10;
+
+  const double* places;      ///< kPlaceSize a particle: tangent vectors x, y, its unit vector
   std::uint32_t free_count;  ///< particles below it have a gradient
   double* gradient;          ///< 2 a free particle
   double* hessian;           ///< 4 a block, by columns

@@ -36,15 +36,22 @@ struct LaneFrame {
   Lanes2 coordinates(const Lanes3& v) const { return {dot(x, v), dot(y, v)}; }
 };
 
-inline Lanes3 gather(const double* triples, std::size_t stride, const std::uint32_t* rows) {
-  Lanes3 result;
-  for (int k = 0; k < kLanes; ++k) {
-    const double* triple = triples + stride * rows[k];
-    result.x[k] = triple[0];
-    result.y[k] = triple[1];
-    result.z[k] = triple[2];
+/// Four successive numbers of the place of each lane, one Lanes for each of the four.
+inline void gather(const double* first, const std::uint32_t* rows, Lanes* const (&fields)[4]) {
+  for (int part = 0; part < kLanes / 4; ++part) {
+    Four numbers[4];
+    for (int k = 0; k < 4; ++k) {
+      numbers[k] = loadFour(first + HessianArrays::kPlaceSize * rows[4 * part + k]);
+    }
+    transpose(numbers);
+    for (int k = 0; k < 4; ++k) setFour(numbers[k], part, *fields[k]);
   }
-  return result;
+}
+
+inline void gather(const double* places, const std::uint32_t* rows, LaneFrame& end) {
+  gather(places, rows, {&end.x.x, &end.x.y, &end.x.z, &end.y.x});
+  gather(places + 4, rows, {&end.y.y, &end.y.z, &end.point.x, &end.point.y});
+  for (int k = 0; k < kLanes; ++k) end.point.z[k] = places[HessianArrays::kPlaceSize * rows[k] + 8];
 }
 
 /// The ends of kLanes springs from `first` on, and what belongs to them.
@@ -60,10 +67,7 @@ struct LaneSprings {
       rest[k] = springs.rest[first + k];
       stiffness[k] = springs.stiffness[first + k];
     }
-    for (std::size_t i = 0; i < N; ++i) {
-      ends[i] = {gather(arrays.points, 3, rows[i]), gather(arrays.frames, 6, rows[i]),
-                 gather(arrays.frames + 3, 6, rows[i])};
-    }
+    for (std::size_t i = 0; i < N; ++i) gather(arrays.places, rows[i], ends[i]);
   }
 };
 
@@ -82,18 +86,19 @@ inline void addGradient(const std::uint32_t (&rows)[N][kLanes], std::size_t end,
 template <std::size_t N>
 inline void addBlock(const SpringFields<N>& springs, std::uint32_t first, std::size_t i,
                      std::size_t j, const LaneBlock& block, const HessianArrays& arrays) {
-  for (int k = 0; k < kLanes; ++k) {
-    const std::uint32_t place = springs.places[first + k][N * i + j];
-    if (place == HessianArrays::kNotStored) continue;
-    double* const to = arrays.hessian + 4 * std::size_t(place);
-    const double values[4] = {block.xx[k], block.yx[k], block.xy[k], block.yy[k]};
-    for (int c = 0; c < 4; ++c) to[c] += values[c];
-    if (i == j) continue;
-    double* const opposite = arrays.hessian + 4 * std::size_t(springs.places[first + k][N * j + i]);
-    opposite[0] += values[0];
-    opposite[1] += values[2];
-    opposite[2] += values[1];
-    opposite[3] += values[3];
+  constexpr FourIndices kTransposed = {0, 2, 1, 3};
+  for (int part = 0; part < kLanes / 4; ++part) {
+    Four values[4] = {fourOf(block.xx, part), fourOf(block.yx, part), fourOf(block.xy, part),
+                      fourOf(block.yy, part)};
+    transpose(values);
+    for (int k = 0; k < 4; ++k) {
+      const auto& places = springs.places[first + 4 * part + k];
+      const std::size_t place = places[N * i + j], opposite = places[N * j + i];
+      if (place == HessianArrays::kNotStored) continue;
+      addFour(values[k], arrays.hessian + 4 * place);
+      if (i == j) continue;
+      addFour(__builtin_shuffle(values[k], kTransposed), arrays.hessian + 4 * opposite);
+    }
   }
 }
 

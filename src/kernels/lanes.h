@@ -5,12 +5,56 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace {
 
+#ifdef __AVX512F__
 constexpr int kLanes = 8;
+#else
+constexpr int kLanes = 4;  // more would not stay in registers
+#endif
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneMask = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
+
+using Four = double __attribute__((vector_size(4 * sizeof(double))));
+using FourIndices = std::int64_t __attribute__((vector_size(4 * sizeof(double))));
+
+inline Four loadFour(const double* from) {
+  Four result;
+  std::memcpy(&result, from, sizeof result);
+  return result;
+}
+
+inline void addFour(const Four& value, double* to) {
+  const Four sum = loadFour(to) + value;
+  std::memcpy(to, &sum, sizeof sum);
+}
+
+/// Numbers 4 part to 4 part + 3.
+inline Four fourOf(const Lanes& x, int part) {
+  Four result;
+  std::memcpy(&result, reinterpret_cast<const char*>(&x) + part * sizeof result, sizeof result);
+  return result;
+}
+
+inline void setFour(const Four& value, int part, Lanes& x) {
+  std::memcpy(reinterpret_cast<char*>(&x) + part * sizeof value, &value, sizeof value);
+}
+
+/// Rows become columns.
+inline void transpose(Four (&rows)[4]) {
+  constexpr FourIndices kEven = {0, 4, 2, 6}, kOdd = {1, 5, 3, 7};
+  constexpr FourIndices kLow = {0, 1, 4, 5}, kHigh = {2, 3, 6, 7};
+  const Four a = __builtin_shuffle(rows[0], rows[1], kEven);
+  const Four b = __builtin_shuffle(rows[0], rows[1], kOdd);
+  const Four c = __builtin_shuffle(rows[2], rows[3], kEven);
+  const Four d = __builtin_shuffle(rows[2], rows[3], kOdd);
+  rows[0] = __builtin_shuffle(a, c, kLow);
+  rows[1] = __builtin_shuffle(b, d, kLow);
+  rows[2] = __builtin_shuffle(a, c, kHigh);
+  rows[3] = __builtin_shuffle(b, d, kHigh);
+}
 
 inline Lanes squareRoot(const Lanes& x) {
   Lanes result;

@@ -149,28 +149,29 @@ void TangentEnergy::take(const System& system) {
 namespace {
 
 /// The frame turned as little as leaves it tangent at `p`.
-void carryFrame(const Vector3& p, TangentFrame& frame) {
+TangentFrame carried(const TangentFrame& frame, const Vector3& p) {
   const Vector3 x = frame.col(0);
-  frame.col(0) = (x - x.dot(p) * p).normalized();
-  frame.col(1) = p.cross(frame.col(0));
+  TangentFrame result;
+  result.col(0) = (x - x.dot(p) * p).normalized();
+  result.col(1) = p.cross(result.col(0));
+  return result;
 }
 
 }  // namespace
 
 void TangentEnergy::place(const Points& positions) {
-  points_.resize(particles_.size());
-  frames_.resize(particles_.size());
+  places_.resize(particles_.size());
   parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
-    points_[n] = positions.col(particles_[n]);
-    frames_[n] = tangentFrame(points_[n]);
+    const Vector3 point = positions.col(particles_[n]);
+    places_[n] = {tangentFrame(point), point};
   });
   findPinnedValue();
 }
 
 void TangentEnergy::carry(const Points& positions) {
   parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
-    points_[n] = positions.col(particles_[n]);
-    carryFrame(points_[n], frames_[n]);
+    const Vector3 point = positions.col(particles_[n]);
+    places_[n] = {carried(places_[n].frame, point), point};
   });
   findPinnedValue();
 }
@@ -192,21 +193,15 @@ void TangentEnergy::setTargets(const Points& targets) {
 
 void TangentEnergy::move(const Eigen::VectorXd& step) {
   parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
-    TangentFrame& frame = frames_[n];
-    points_[n] = (points_[n] + frame * step.segment<2>(2 * n)).normalized();
-    carryFrame(points_[n], frame);
+    const auto& [frame, from] = places_[n];
+    const Vector3 point = (from + frame * step.segment<2>(2 * n)).normalized();
+    places_[n] = {carried(frame, point), point};
   });
 }
 
-void TangentEnergy::mark() {
-  marked_points_ = points_;
-  marked_frames_ = frames_;
-}
+void TangentEnergy::mark() { marked_places_ = places_; }
 
-void TangentEnergy::goBack() {
-  points_ = marked_points_;
-  frames_ = marked_frames_;
-}
+void TangentEnergy::goBack() { places_ = marked_places_; }
 
 double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
   const Graph& graph = pattern_.graph;
@@ -244,9 +239,10 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
         {&restOf(first), sizeof(Spring)},
         {&first.stiffness, sizeof(Spring)},
         {compiled.places.data(), sizeof(compiled.places[0])}};
-    const HessianArrays arrays = {
-        points_.front().data(), frames_.front().data(),  static_cast<std::uint32_t>(freeCount()),
-        gradient_.data(),       hessian_.front().data(), curvature == Curvature::definite};
+    static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
+    const HessianArrays arrays = {places_.front().frame.data(),
+                                  static_cast<std::uint32_t>(freeCount()), gradient_.data(),
+                                  hessian_.front().data(), curvature == Curvature::definite};
     std::vector<std::uint32_t> left_out(end - begin);
     std::uint32_t count = 0;
     value = kernelFor(first)(fields, begin, end, arrays, left_out.data(), count);
@@ -264,8 +260,8 @@ double TangentEnergy::addOne(const Compiled<Spring>& compiled, std::size_t s, Cu
   std::array<Vector3, kEnds> points;
   std::array<TangentFrame, kEnds> frames;
   for (std::size_t i = 0; i < kEnds; ++i) {
-    points[i] = points_[spring.particles[i]];
-    frames[i] = frames_[spring.particles[i]];
+    points[i] = places_[spring.particles[i]].point;
+    frames[i] = places_[spring.particles[i]].frame;
   }
   const auto c = tangentCondition(spring, points, frames, curvature);
   for (std::size_t i = 0; i < kEnds; ++i) {
@@ -306,13 +302,19 @@ void TangentEnergy::evaluate(Curvature curvature) {
 void TangentEnergy::addInertia(Curvature curvature) {
   for (std::size_t n = 0; n < freeCount(); ++n) {
     const double stiffness = inertia_[particles_[n]] / unit_;
-    const auto c = tangentCondition(AngleSpring(), {points_[n], targets_[n]},
-                                    {frames_[n], frames_[n]}, curvature);
+    const auto& [frame, point] = places_[n];
+    const auto c = tangentCondition(AngleSpring(), {point, targets_[n]}, {frame, frame}, curvature);
     value_ += 0.5 * stiffness * c.value * c.value;
     gradient_.segment<2>(2 * n) += stiffness * c.value * c.gradient[0];
     hessian_[pattern_.diagonal[n]] +=
         stiffness * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]);
   }
+}
+
+std::vector<TangentFrame> TangentEnergy::frames() const {
+  std::vector<TangentFrame> result(freeCount());
+  for (std::size_t n = 0; n < freeCount(); ++n) result[n] = places_[n].frame;
+  return result;
 }
 
 double TangentEnergy::maxTorque() const {
@@ -325,14 +327,14 @@ double TangentEnergy::maxTorque() const {
 
 Points TangentEnergy::positions() const {
   Points result(3, particles_.size());
-  for (std::size_t n = 0; n < particles_.size(); ++n) result.col(particles_[n]) = points_[n];
+  for (std::size_t n = 0; n < particles_.size(); ++n) result.col(particles_[n]) = places_[n].point;
   return result;
 }
 
 Points TangentEnergy::moves(const Eigen::VectorXd& step) const {
   Points result = Points::Zero(3, static_cast<Eigen::Index>(particles_.size()));
   for (std::size_t n = 0; n < freeCount(); ++n) {
-    result.col(particles_[n]) = frames_[n] * step.segment<2>(2 * n);
+    result.col(particles_[n]) = places_[n].frame * step.segment<2>(2 * n);
   }
   return result;
 }

@@ -11,6 +11,12 @@
 
 namespace spherical_springs::core {
 
+/// A point of the sphere and the frame of its tangent plane.
+struct TangentPlace {
+  TangentFrame frame;
+  Vector3 point;
+};
+
 /// Energies are in units of `unit()`, the largest stiffness, so that single precision holds every
 /// Hessian. Free particles come in an order of their own, in which those that are joined are close;
 /// free particle f has the unknowns 2 f and 2 f + 1, its coordinates in a tangent frame of its own.
@@ -51,7 +57,8 @@ class TangentEnergy {
   double value() const { return value_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
-  const std::vector<TangentFrame>& frames() const { return frames_; }
+  /// Of the free particles.
+  std::vector<TangentFrame> frames() const;
 
   /// What the quadratic model of the last evaluation promises of a step.
   double expectedDrop(const Eigen::VectorXd& step) const;
@@ -95,8 +102,7 @@ class TangentEnergy {
   double unit_ = 1;
   Eigen::VectorXd inertia_;
   std::vector<Vector3> targets_;
-  std::vector<Vector3> points_, marked_points_;
-  std::vector<TangentFrame> frames_, marked_frames_;
+  std::vector<TangentPlace> places_, marked_places_;
   double value_ = 0, pinned_value_ = 0;
   Eigen::VectorXd gradient_;
   Hessian hessian_;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "kernels/hessian_kernels.h"
+#include "minimisation/tangent_energy.h"
 #include "scenes.h"
 
 namespace spherical_springs::core {
@@ -56,8 +57,7 @@ struct Bench {
   static constexpr std::size_t N = Spring::kParticles;
 
   std::vector<Spring> springs;
-  std::vector<Vector3> points;
-  std::vector<TangentFrame> frames;
+  std::vector<TangentPlace> at;
   std::vector<std::array<std::uint32_t, N * N>> places;
   std::uint32_t free_count = 0;
   std::vector<Eigen::Vector2d> gradient;  // of pinned particles too, which must stay 0
@@ -74,8 +74,7 @@ struct Bench {
     for (std::size_t i = rows.size(); i > 1; --i) {
       std::swap(rows[i - 1], rows[random.below(static_cast<std::uint32_t>(i))]);
     }
-    points.resize(rows.size());
-    frames.resize(rows.size());
+    at.resize(rows.size());
     free_count = static_cast<std::uint32_t>((1 - pinned) * static_cast<double>(rows.size()));
     std::uint32_t blocks = 0;
     for (std::uint32_t s = 0; s < count; ++s) {
@@ -105,20 +104,18 @@ struct Bench {
       const double turn = random.between(0, 6);  // frames of any direction
       Eigen::Matrix2d turned;
       turned << std::cos(turn), -std::sin(turn), std::sin(turn), std::cos(turn);
-      points[springs[s].particles[i]] = ends[i];
-      frames[springs[s].particles[i]] = tangentFrame(ends[i]) * turned;
+      at[springs[s].particles[i]] = {tangentFrame(ends[i]) * turned, ends[i]};
     }
   }
 
   void run(const HessianKernels& kernels, Curvature curvature) {
-    gradient.assign(points.size(), Eigen::Vector2d::Zero());
+    gradient.assign(at.size(), Eigen::Vector2d::Zero());
     std::fill(hessian.begin(), hessian.end(), Eigen::Matrix2d::Zero());
     const SpringFields<N> fields = {{springs[0].particles.data(), sizeof(Spring)},
                                     {&restOf(springs[0]), sizeof(Spring)},
                                     {&springs[0].stiffness, sizeof(Spring)},
                                     {places.data(), sizeof(places[0])}};
-    const HessianArrays arrays = {points[0].data(),  frames[0].data(),
-                                  free_count,        gradient[0].data(),
+    const HessianArrays arrays = {at[0].frame.data(), free_count, gradient[0].data(),
                                   hessian[0].data(), curvature == Curvature::definite};
     const auto count = static_cast<std::uint32_t>(springs.size());
     left_out.resize(count);
@@ -138,8 +135,8 @@ struct Bench {
       std::array<Vector3, N> ends;
       std::array<TangentFrame, N> end_frames;
       for (std::size_t i = 0; i < N; ++i) {
-        ends[i] = points[spring.particles[i]];
-        end_frames[i] = frames[spring.particles[i]];
+        ends[i] = at[spring.particles[i]].point;
+        end_frames[i] = at[spring.particles[i]].frame;
       }
       const auto c = tangentCondition(spring, ends, end_frames, curvature);
       const double value = std::abs(c.value) + std::abs(restOf(spring));
@@ -205,7 +202,7 @@ TYPED_TEST(HessianKernelsOf, PinnedEndsTakeNothing) {
   for (const double share : {0.2, 0.5, 0.9}) this->check(0.2, share, this->kWhole);
 }
 
-// One that is too long takes with it those beside it, and no others.
+// One that is too long takes with it those that are computed at the same time, and no others.
 TYPED_TEST(HessianKernelsOf, LongSpringsAreLeftOut) {
   for (const HessianKernels& kernels : kernelsHere()) {
     for (const Curvature curvature : kCurvatures) {
@@ -216,8 +213,10 @@ TYPED_TEST(HessianKernelsOf, LongSpringsAreLeftOut) {
       ends.back() = -rotated(ends[0], 0.1 * perpendicular(ends[0]));
       bench.put(19, ends, random);
       bench.run(kernels, curvature);
-      const std::vector<std::uint32_t> expected = {16, 17, 18, 19, 20, 21, 22, 23, 40, 41, 42};
-      EXPECT_EQ(bench.left_out, expected);
+      const std::vector<std::uint32_t> of_four = {16, 17, 18, 19, 40, 41, 42};
+      const std::vector<std::uint32_t> of_eight = {16, 17, 18, 19, 20, 21, 22, 23, 40, 41, 42};
+      EXPECT_TRUE(bench.left_out == of_four || bench.left_out == of_eight)
+          << ::testing::PrintToString(bench.left_out);
       bench.check(curvature);
     }
   }
