@@ -12,9 +12,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 # Okabe and Ito's colours, told apart by the colour-blind.
 COLOURS = {'euler': '#E69F00', 'verlet': '#0072B2', 'fourth_order': '#009E73',
            'implicit_euler': '#CC79A7', 'report': '#000000',
-           'newton': '#0072B2', 'dynamics': '#E69F00'}
+           'newton': '#0072B2', 'dynamics': '#E69F00', 'fire': '#009E73'}
 MARKERS = {'euler': 'o', 'verlet': 's', 'fourth_order': '^', 'implicit_euler': 'v',
-           'report': 'x', 'newton': 's', 'dynamics': '.'}
+           'report': 'x', 'newton': 's', 'dynamics': '.', 'fire': '.'}
 INTEGRATORS = ('euler', 'verlet', 'fourth_order', 'implicit_euler')
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 

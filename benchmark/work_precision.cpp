@@ -228,7 +228,7 @@ void measureSteps(const Case& c, double budget, std::ostream& csv) {
 void measureRelaxation(std::ostream& csv) {
   const Scene scene = mesh(0);
   const System system(scene, System::Options());
-  for (const char* name : {"newton", "dynamics"}) {
+  for (const char* name : {"newton", "dynamics", "fire"}) {
     RelaxationOptions options;
     options.method = relaxationMethod(name);
     options.tolerance = 1e-12;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "alignment.h"
+#include "minimisation/damped_dynamics.h"
 #include "minimisation/fire.h"
 #include "minimisation/newton.h"
 #include "minimisation/particle_stiffness.h"
@@ -69,6 +70,20 @@ std::string nearlyUndefinedSpring(const System& system, const Points& positions)
   return name;
 }
 
+/// Null for Newton's method.
+std::unique_ptr<Descent> dynamicsOf(RelaxationMethod method, const System& system,
+                                    OrientationGuard* guard) {
+  switch (method) {
+    case RelaxationMethod::newton:
+      return nullptr;
+    case RelaxationMethod::dynamics:
+      return std::make_unique<DampedDynamics>(system, guard);
+    case RelaxationMethod::fire:
+      return std::make_unique<Fire>(system, guard);
+  }
+  return nullptr;
+}
+
 /// One relaxation under way.
 class Relaxation {
  public:
@@ -84,10 +99,8 @@ class Relaxation {
     at_start = at_start && options.method == RelaxationMethod::newton;
     OrientationGuard* const guard = options.keep_orientation ? &guard_ : nullptr;
     newton_.keepOrientation(guard);
-    if (options.method == RelaxationMethod::dynamics) {
-      fire_ = std::make_unique<Fire>(system, guard);
-    }
-    descent_ = fire_ ? static_cast<Descent*>(fire_.get()) : &newton_;
+    dynamics_ = dynamicsOf(options.method, system, guard);
+    descent_ = dynamics_ ? dynamics_.get() : &newton_;
     newton_.aimAt(tolerance_);
     if (!at_start) descent_->place(positions);
     first_torque_ = descent_->maxTorque();
@@ -129,9 +142,9 @@ class Relaxation {
   }
 
   bool leaveSaddle() {
-    if (fire_) newton_.place(fire_->positions());
+    if (dynamics_) newton_.place(dynamics_->positions());
     if (!newton_.leaveSaddle()) return false;
-    if (fire_) fire_->place(newton_.positions());
+    if (dynamics_) dynamics_->place(newton_.positions());
     return true;
   }
 
@@ -208,7 +221,7 @@ class Relaxation {
   const Points& start_;
   OrientationGuard guard_;
   Newton& newton_;
-  std::unique_ptr<Fire> fire_;
+  std::unique_ptr<Descent> dynamics_;  // none for Newton's method
   Descent* descent_;
   double first_torque_;
   RelaxationResult result_;
@@ -219,7 +232,9 @@ class Relaxation {
 RelaxationMethod relaxationMethod(const std::string& name) {
   if (name.empty() || name == "newton") return RelaxationMethod::newton;
   if (name == "dynamics") return RelaxationMethod::dynamics;
-  throw std::invalid_argument("method is '" + name + "'; allowed: newton (the default), dynamics");
+  if (name == "fire") return RelaxationMethod::fire;
+  throw std::invalid_argument("method is '" + name +
+                              "'; allowed: newton (the default), dynamics, fire");
 }
 
 double defaultTolerance(const System& system) { return 1e-9 * system.largestStiffness(); }

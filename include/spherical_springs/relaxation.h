@@ -12,11 +12,12 @@
 namespace spherical_springs::core {
 
 enum class RelaxationMethod {
-  newton,   ///< Newton's method on the sphere
-  dynamics  ///< damped stepping, by the fast inertial relaxation engine (FIRE)
+  newton,    ///< Newton's method on the sphere
+  dynamics,  ///< damped stepping as in the report, with a step chosen by itself
+  fire       ///< the fast inertial relaxation engine, a quicker way of that
 };
 
-/// `name`: "newton", "dynamics", or empty for the default, newton.
+/// `name`: "newton", "dynamics", "fire", or empty for the default, newton.
 /// @throw std::invalid_argument for any other name.
 RelaxationMethod relaxationMethod(const std::string& name);
 

@@ -74,10 +74,11 @@ ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) 
   return solver_.minimum(energy_, definite, shifts, gradient, tolerance);
 }
 
-/// How much of the gradient a step may leave: little where earlier steps have left little.
+/// How much of the gradient a step may leave: little where earlier steps have left little, or where
+/// the start is near an earlier end.
 double Newton::tolerance() const {
-  constexpr double kMost = 0.1, kLeast = 1e-4;
-  if (iterations_ == 0) return kMost;
+  constexpr double kMost = 0.1, kNearEnd = 1e-2, kLeast = 1e-4;
+  if (iterations_ == 0) return model_ == Model::exact ? kNearEnd : kMost;
   const double left = energy_.gradient().norm() / earlier_gradient_;
   const double enough = 0.3 * wanted_torque_ / energy_.maxTorque();
   return std::clamp(std::max(0.9 * std::pow(left, 1.5), enough), kLeast, kMost);

@@ -140,7 +140,7 @@ TEST_P(HardCases, StayFiniteBeyondTheStableStep) {
 }
 
 class HardRelaxations : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, HardRelaxations, ::testing::Values("newton", "dynamics"));
+INSTANTIATE_TEST_SUITE_P(Methods, HardRelaxations, ::testing::Values("newton", "fire"));
 
 TEST_P(HardRelaxations, EndAtTheMinimumTheSameWayEveryRun) {
   for (const HardCase& hard : hardCases()) {

@@ -49,7 +49,7 @@ class Orientation : public ::testing::TestWithParam<const char*> {
 
   int most_folded_ = 0;
 };
-INSTANTIATE_TEST_SUITE_P(Methods, Orientation, ::testing::Values("newton", "dynamics"));
+INSTANTIATE_TEST_SUITE_P(Methods, Orientation, ::testing::Values("newton", "dynamics", "fire"));
 
 TEST_P(Orientation, GivesWayUnlessItIsToBeKept) {
   const auto free = relaxed(pulledAcross(), false);

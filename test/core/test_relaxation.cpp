@@ -20,7 +20,7 @@ class Relaxation : public ::testing::TestWithParam<const char*> {
     return relax(system, positions, options);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Methods, Relaxation, ::testing::Values("newton", "dynamics"));
+INSTANTIATE_TEST_SUITE_P(Methods, Relaxation, ::testing::Values("newton", "dynamics", "fire"));
 
 Scene sceneAt(const std::vector<Vector3>& places, const SpringLists& springs,
               const std::vector<std::size_t>& pinned = {}) {

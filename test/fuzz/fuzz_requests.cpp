@@ -89,7 +89,7 @@ class Requests {
 
   void relaxShortly() {
     RelaxationOptions options;
-    options.method = data_.ConsumeBool() ? RelaxationMethod::newton : RelaxationMethod::dynamics;
+    options.method = relaxationMethod(data_.PickValueInArray({"newton", "dynamics", "fire"}));
     options.tolerance = data_.ConsumeBool() ? 0 : number();
     int iterations = data_.ConsumeIntegralInRange(1, 8);
     options.go_on = [&](const RelaxationProgress& progress) {

@@ -8,7 +8,7 @@ from scenes import (
     add_knot, add_mixed_octant, add_octant, angle, angle_spring, angular_velocities, exact,
     particle, positions, solid_angle_spring)
 
-METHODS = ('newton', 'dynamics')
+METHODS = ('newton', 'dynamics', 'fire')
 
 
 class TestOutcome(NodeTest):
