@@ -79,12 +79,17 @@ void Publisher::publishSample() {
 
 void Publisher::publishStatusIfDue() {
   constexpr double kPeriod = 1;  // [s]
+  constexpr double kRestAfterWork = 4;
   const bool listened_to = status_.getNumSubscribers() > 0 || diagnostics_.listenedTo();
-  const double age = (ros::WallTime::now() - last_status_).toSec();
+  const ros::WallTime begin = ros::WallTime::now();
+  const double age = (begin - last_status_).toSec();
+  if (begin < next_status_) return;
   if (!status_changed_.exchange(false) && !(listened_to && age >= kPeriod)) return;
   const Report now = report(runner_.snapshot());
   status_.publish(now.status);
   if (diagnostics_.listenedTo()) diagnostics_.publish(now);
+  const ros::WallTime end = ros::WallTime::now();
+  next_status_ = end + (end - begin) * kRestAfterWork;
 }
 
 double Publisher::realTimeFactor(const core::State& state) {

@@ -26,7 +26,8 @@ class Publisher {
   /// `runner` must live longer.
   Publisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters);
 
-  /// The status will be published within a twentieth of a second.
+  /// The status will be published soon: within a twentieth of a second, but for large scenes, whose
+  /// status takes long to work out.
   void statusChanged() { status_changed_ = true; }
 
   /// Puts `message` into the status as the last thing worth telling a person.
@@ -51,7 +52,7 @@ class Publisher {
   Diagnostics diagnostics_;
 
   // Used by the status timer alone.
-  ros::WallTime last_status_;
+  ros::WallTime last_status_, next_status_;  // not to publish before the next
   double last_simulated_ = 0;
   Lag lag_;
   core::Measures measures_;

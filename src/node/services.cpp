@@ -33,21 +33,34 @@ class StatusChange {
 
 }  // namespace
 
-template <class Service>
-void Services::advertise(ros::NodeHandle& node, const std::string& name,
-                         void (Services::*handle)(const typename Service::Request&,
-                                                  typename Service::Response&)) {
+template <class Service, class Handle>
+void Services::advertiseAny(ros::NodeHandle& node, const std::string& name, const Handle& handle) {
   const auto limits = runner_.read([](const core::Simulation& s) { return s.settings().limits; });
   servers_.push_back(advertiseAnswering<Service>(
       node, name, limits, [this, handle](const auto& request, auto& response) {
-        const StatusChange told_at_the_end(publisher_);
         try {
-          (this->*handle)(request, response);
+          handle(request, response);
         } catch (const core::NonFinite& fault) {
           publisher_.diagnostics().refused(fault.what());
           throw;
         }
       }));
+}
+
+template <class Service>
+void Services::advertiseReader(ros::NodeHandle& node, const std::string& name,
+                               Handler<Service> handle) {
+  advertiseAny<Service>(node, name, [this, handle](const auto& request, auto& response) {
+    (this->*handle)(request, response);
+  });
+}
+
+template <class Service>
+void Services::advertise(ros::NodeHandle& node, const std::string& name, Handler<Service> handle) {
+  advertiseAny<Service>(node, name, [this, handle](const auto& request, auto& response) {
+    const StatusChange told_at_the_end(publisher_);
+    (this->*handle)(request, response);
+  });
 }
 
 Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publisher,
@@ -59,13 +72,13 @@ Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publis
   advertise<AddSprings>(node, "add_springs", &Services::addSprings);
   advertise<SetSprings>(node, "set_springs", &Services::setSprings);
   advertise<RemoveSprings>(node, "remove_springs", &Services::removeSprings);
-  advertise<GetScene>(node, "get_scene", &Services::getScene);
+  advertiseReader<GetScene>(node, "get_scene", &Services::getScene);
   advertise<LoadScene>(node, "load_scene", &Services::loadScene);
-  advertise<SaveScene>(node, "save_scene", &Services::saveScene);
+  advertiseReader<SaveScene>(node, "save_scene", &Services::saveScene);
   advertise<std_srvs::Trigger>(node, "clear", &Services::clear);
   advertise<std_srvs::Trigger>(node, "reset", &Services::reset);
   advertise<std_srvs::SetBool>(node, "set_running", &Services::setRunning);
-  advertise<Step>(node, "step", &Services::step);
+  advertiseReader<Step>(node, "step", &Services::step);
   advertise<Relax>(node, "relax", &Services::relax);
   advertise<std_srvs::Trigger>(node, "cancel", &Services::cancel);
 }
@@ -182,6 +195,7 @@ void Services::setRunning(const std_srvs::SetBool::Request& request,
 void Services::step(const Step::Request& request, Step::Response& response) {
   const auto begin = ros::WallTime::now();
   if (request.steps > 0) {
+    const StatusChange told_at_the_end(publisher_);
     const std::uint64_t done = runner_.step(request.steps);
     response.message = done == request.steps ? "did " + counted(done, "step")
                                              : "cancelled after " + counted(done, "step") + " of " +

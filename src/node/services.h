@@ -50,9 +50,17 @@ class Services {
   void cancel(const std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   template <class Service>
-  void advertise(ros::NodeHandle& node, const std::string& name,
-                 void (Services::*handle)(const typename Service::Request&,
-                                          typename Service::Response&));
+  using Handler = void (Services::*)(const typename Service::Request&, typename Service::Response&);
+
+  template <class Service>
+  void advertiseReader(ros::NodeHandle& node, const std::string& name, Handler<Service> handle);
+
+  /// A service after whose calls, refused ones too, the status is published.
+  template <class Service>
+  void advertise(ros::NodeHandle& node, const std::string& name, Handler<Service> handle);
+
+  template <class Service, class Handle>
+  void advertiseAny(ros::NodeHandle& node, const std::string& name, const Handle& handle);
 
   core::Runner& runner_;
   Publisher& publisher_;

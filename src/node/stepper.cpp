@@ -14,21 +14,51 @@ constexpr double kPeriod = 0.01;  // [s]
 Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters)
     : runner_(runner),
       pacer_(parameters.time_step, parameters.real_time_factor),
-      last_tick_(ros::Time::now()),
-      last_wall_tick_(ros::WallTime::now()),
+      last_step_(ros::Time::now()),
+      last_wall_step_(ros::WallTime::now()),
+      thread_([this] { stepAtEachTick(); }),
       timer_(node.createTimer(ros::Duration(kPeriod), surviving([this] { tick(); }))) {}
 
-// Steps that do not fit into the time until the next tick are dropped: simulated time falls behind.
+Stepper::~Stepper() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
 void Stepper::tick() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ticked_ = true;
+  }
+  changed_.notify_one();
+}
+
+void Stepper::stepAtEachTick() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ticked_ || ends_; });
+    if (ends_) return;
+    ticked_ = false;
+    lock.unlock();
+    survive([this] { step(); });
+    lock.lock();
+  }
+}
+
+// Steps that do not fit into the time until the next tick are dropped: simulated time falls behind.
+void Stepper::step() {
   const ros::Time now = ros::Time::now();
   const ros::WallTime wall_now = ros::WallTime::now();
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
-  const double elapsed = last_tick_.isZero() ? 0 : (now - last_tick_).toSec();
+  const double elapsed = last_step_.isZero() ? 0 : (now - last_step_).toSec();
   const std::uint64_t due = pacer_.due(elapsed);
-  const double wall_elapsed = (wall_now - last_wall_tick_).toSec();
-  last_tick_ = now;
-  last_wall_tick_ = wall_now;
+  const double wall_elapsed = (wall_now - last_wall_step_).toSec();
+  last_step_ = now;
+  last_wall_step_ = wall_now;
   runner_.advance(due, std::max(kPeriod, wall_elapsed));
 }
 
