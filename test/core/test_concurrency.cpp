@@ -1,12 +1,17 @@
-// Everything that clients, timers and topics do with a runner, at once; scripts/thread_sanitizer
-// runs it under ThreadSanitizer too.
+// Everything that clients, timers and topics do with a runner, at once, and the threads that share
+// its loops; scripts/thread_sanitizer runs it under ThreadSanitizer too.
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cmath>
 #include <functional>
+#include <ostream>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
+#include "parallel.h"
 #include "scenes.h"
 #include "spherical_springs/measures.h"
 #include "spherical_springs/runner.h"
@@ -14,10 +19,22 @@
 namespace spherical_springs::core {
 namespace {
 
-class Concurrency : public ::testing::Test {
+struct Crowd {
+  int threads;  ///< of each loop
+  std::uint32_t particles;
+  int calls;  ///< of each client
+  int steps;  ///< of a call
+};
+
+void PrintTo(const Crowd& crowd, std::ostream* out) {
+  *out << crowd.particles << " particles on " << crowd.threads << " threads";
+}
+
+class Concurrency : public ::testing::TestWithParam<Crowd> {
  protected:
-  void SetUp() override {
-    const Scene scene = testing::randomScene(1, 60, 80, 0.1, 1);
+  Concurrency() {
+    const int springs_each = static_cast<int>(GetParam().particles);
+    const Scene scene = testing::randomScene(1, GetParam().particles, springs_each, 0.1, 1);
     runner_.change([&](Simulation& s) {
       s.addParticles(scene.particles().items());
       s.addSprings(testing::springsOf(scene));
@@ -26,9 +43,8 @@ class Concurrency : public ::testing::Test {
 
   /// Calls many times, on a thread; what is refused meanwhile is refused.
   void keepCalling(const std::function<void()>& call) {
-    constexpr int kTimes = 150;
-    clients_.emplace_back([=] {
-      for (int i = 0; i < kTimes; ++i) {
+    clients_.emplace_back([this, call] {
+      for (int i = 0; i < GetParam().calls; ++i) {
         try {
           call();
         } catch (const std::runtime_error&) {
@@ -42,12 +58,18 @@ class Concurrency : public ::testing::Test {
     for (std::thread& client : clients_) client.join();
   }
 
-  Runner runner_{Simulation::Settings(), true};  // one thread for each loop, unless set otherwise
+  static Simulation::Settings settings() {
+    Simulation::Settings settings;
+    settings.system.threads = GetParam().threads;
+    return settings;
+  }
+
+  Runner runner_{settings(), true};
   std::vector<std::thread> clients_;
   std::atomic<int> refused_{0};
 };
 
-TEST_F(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
+TEST_P(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
   // A topic and the status.
   keepCalling([this] {
     const auto now = runner_.snapshot();
@@ -58,7 +80,7 @@ TEST_F(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
     ASSERT_TRUE(std::isfinite(energies(*now.system, now.state).total()));
   });
   // The timer.
-  keepCalling([this] { runner_.advance(20, 0.01); });
+  keepCalling([this] { runner_.advance(GetParam().steps, 0.01); });
   // Clients.
   keepCalling([this] { runner_.read([](const Simulation& s) { return s.presentScene(); }); });
   for (const bool running : {false, true}) {
@@ -71,7 +93,7 @@ TEST_F(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
     runner_.change([&](Simulation& s) { s.removeParticles(ids); });
   });
   keepCalling([this] { runner_.change([](Simulation& s) { s.reset(); }); });
-  keepCalling([this] { runner_.step(1000); });
+  keepCalling([this] { runner_.step(GetParam().steps); });
   for (const auto method : {RelaxationMethod::newton, RelaxationMethod::dynamics}) {
     keepCalling([this, method] {
       RelaxationOptions options;
@@ -93,7 +115,7 @@ TEST_F(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
   EXPECT_TRUE(runner_.snapshot().state.positions.allFinite());
 }
 
-TEST_F(Concurrency, OfClosingAndAllElse) {
+TEST_P(Concurrency, OfClosingAndAllElse) {
   runner_.setRunning(false);
   for (int i = 0; i < 2; ++i) {
     keepCalling([this] { runner_.step(~std::uint64_t(0)); });
@@ -109,6 +131,42 @@ TEST_F(Concurrency, OfClosingAndAllElse) {
   runner_.close();
   join();
   EXPECT_EQ(runner_.snapshot().activity, Activity::none);
+}
+
+// Loops over the springs of the larger scenes are long enough to be shared.
+INSTANTIATE_TEST_SUITE_P(OfARunner, Concurrency,
+                         ::testing::Values(Crowd{1, 60, 150, 1000}, Crowd{2, 4200, 10, 10},
+                                           Crowd{3, 4200, 10, 10}));
+
+TEST(Workers, DoEveryPartOnce) {
+  for (const std::ptrdiff_t count : {0, 1, 2, 5, 1000, 5000}) {
+    for (const int threads : {1, 2, 3, 8}) {
+      std::vector<int> done(count, 0);
+      forOnThreads(count, threads, [&](std::ptrdiff_t i) { ++done[i]; });
+      EXPECT_EQ(done, std::vector<int>(count, 1)) << count << " on " << threads << " threads";
+    }
+  }
+}
+
+TEST(Workers, ServeSeveralCallersAtOnce) {
+  constexpr int kLoops = 2000;
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([caller] {
+      std::vector<std::ptrdiff_t> places(500);
+      for (int loop = 0; loop < kLoops; ++loop) {
+        const std::ptrdiff_t offset = loop + caller;
+        forOnThreads(places.size(), 2 + loop % 3,
+                     [&](std::ptrdiff_t i) { places[i] = i + offset; });
+        std::ptrdiff_t sum = 0;
+        for (const std::ptrdiff_t place : places) sum += place - offset;
+        ASSERT_EQ(sum, 499 * 500 / 2);
+        // Long enough for the pool to fall asleep.
+        if (loop % 100 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
 }
 
 }  // namespace

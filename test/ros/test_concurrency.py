@@ -38,7 +38,7 @@ REQUESTS = [
     lambda node: node.set_running(True),
     lambda node: node.set_running(False),
     lambda node: node.step(0),
-    lambda node: node.step(200),
+    lambda node: node.step(20),
     lambda node: node.relax(max_time=0.1),
     lambda node: node.relax(max_time=0.1, method='dynamics', tolerance=1e-30),
     lambda node: node.cancel(),
@@ -60,9 +60,10 @@ class TestConcurrency(unittest.TestCase):
                     faults.append(fault)
 
         with tempfile.TemporaryDirectory() as directory, \
-                NodeProcess(scene_directory=directory, threads=1, publish_rate=200) as process:
+                NodeProcess(scene_directory=directory, threads=3, publish_rate=200) as process:
             node = process.client()
-            add_random_scene(node, seed=1, particles=100, springs=100)
+            # Loops over so many springs are shared among threads.
+            add_random_scene(node, seed=1, particles=100, springs=5000)
             node.save_scene('scene.json')
             clients = [threading.Thread(target=keep_calling, args=(node, seed))
                        for seed in range(CLIENTS)]
