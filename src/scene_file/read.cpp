@@ -122,7 +122,7 @@ class SceneReader {
 }  // namespace
 
 SceneFile readScene(const fs::path& path, SceneLimits limits) {
-  if (!fs::is_regular_file(path)) {
+  if (fs::exists(path) && !fs::is_regular_file(path)) {
     throw std::runtime_error("cannot read " + path.string() + ": not a file");
   }
   std::ifstream in(path, std::ios::binary);

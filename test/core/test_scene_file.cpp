@@ -195,8 +195,17 @@ TEST_F(SceneFiles, WrittenByManyAtOnceAreWhole) {
 }
 
 TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
-  EXPECT_THROW(readScene(directory_ / "missing.json", {}), std::runtime_error);
-  EXPECT_THROW(readScene(directory_, {}), std::runtime_error);
+  const auto fault_of = [](const fs::path& path) -> std::string {
+    try {
+      readScene(path, {});
+    } catch (const std::runtime_error& fault) {
+      return fault.what();
+    }
+    return "none";
+  };
+  const fs::path missing = directory_ / "missing.json";
+  EXPECT_EQ(fault_of(missing), "cannot read " + missing.string() + ": No such file or directory");
+  EXPECT_EQ(fault_of(directory_), "cannot read " + directory_.string() + ": not a file");
   EXPECT_THROW(writeScene(directory_ / "missing" / "scene.json", Scene(), 0), std::runtime_error);
   EXPECT_TRUE(fs::is_empty(directory_));
 }

@@ -19,6 +19,17 @@ class TestTopic(StatusTest):
         self.assertLessEqual(latched.header.stamp, rospy.Time.now())
         self.assertEqual('map', latched.header.frame_id)
 
+    def test_calls_that_only_read_do_not_ask_for_it(self):
+        # It takes far longer to work out than they do.
+        self.status()
+        rospy.sleep(0.3)  # for what was asked for before
+        begin = rospy.Time.now()
+        self.node.get_scene()
+        self.node.step(0)
+        rospy.sleep(0.3)
+        latched = self.status()
+        self.assertLess(latched.header.stamp, begin)
+
     def test_comes_again_and_again(self):
         with self.node.listen('status', Status) as statuses:
             stamp = statuses.first().header.stamp
