@@ -13,6 +13,43 @@ Damping::Damping(const Eigen::VectorXd& inverse_masses, const Eigen::VectorXd& v
       dampers_(std::move(dampers)),
       end_particles_(std::move(end_particles)) {}
 
+namespace {
+
+/// (1 - exp(-x)) / x
+double meanDecay(double x) { return x == 0 ? 1 : -std::expm1(-x) / x; }
+
+/// (1 - 2 meanDecay(x) + meanDecay(2 x)) / x^2; by Taylor's series where that cancels.
+double meanSquareRise(double x) {
+  constexpr double kSmall = 0.5;
+  if (std::abs(x) > kSmall) return (1 - 2 * meanDecay(x) + meanDecay(2 * x)) / (x * x);
+  constexpr int kTerms = 20;
+  double sum = 0;
+  double power = 2, factor = 1. / 6;  // 2^(n + 1) and (-x)^n / (n + 3)!
+  for (int n = 0; n < kTerms; ++n) {
+    sum += (2 * power - 2) * factor;
+    power *= 2;
+    factor *= -x / (n + 4);
+  }
+  return sum;
+}
+
+}  // namespace
+
+// With rate r = c / m the velocity is w exp(-r t) + torque / m s(t), s(t) = (1 - exp(-r t)) / r, and
+// c times the integral of its square is taken.
+Damping::ViscousFlow Damping::viscousFlow(Eigen::Index particle, double duration) const {
+  const double c = viscous_[particle];
+  const double mobility = inverse_masses_[particle];
+  if (mobility == 0) return {1, 0, {0, 0, 0}};
+  const double x = c * mobility * duration;
+  const double mean = meanDecay(x);
+  const double gain = mobility * duration * mean;
+  return {std::exp(-x),
+          gain,
+          {c * duration * meanDecay(2 * x), c * mobility * duration * duration * mean * mean,
+           c * mobility * mobility * duration * duration * duration * meanSquareRise(x)}};
+}
+
 double Damping::fastestRate(const std::vector<Vector3>& gradients) const {
   Eigen::VectorXd rows = viscous_.cwiseProduct(inverse_masses_);
   for (const Damper& damper : dampers_) {

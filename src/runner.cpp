@@ -1,5 +1,6 @@
 #include "spherical_springs/runner.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -55,15 +56,21 @@ void Runner::setRunning(bool running) {
   running_ = running;
 }
 
+// One step shows how many more there is time for.
 std::uint64_t Runner::stepForASlice(std::uint64_t most) {
+  using Seconds = std::chrono::duration<double>;
   const auto begin = Clock::now();
-  std::uint64_t done = 0;
-  Clock::duration taken;
+  std::uint64_t done = 0, steps = 1;
+  double left;
   do {
-    simulation_.step();
-    taken = Clock::now() - begin;
-  } while (++done < most && taken < kSlice);
-  step_wall_time_ = std::chrono::duration<double>(taken).count() / done;
+    steps = std::min(steps, most - done);
+    simulation_.step(steps);
+    done += steps;
+    const double taken = Seconds(Clock::now() - begin).count();
+    step_wall_time_ = taken / done;
+    left = Seconds(kSlice).count() - taken;
+    steps = left > step_wall_time_ ? static_cast<std::uint64_t>(left / step_wall_time_) : 1;
+  } while (done < most && left > 0);
   return done;
 }
 

@@ -25,15 +25,28 @@ State startOf(const Scene& scene) {
 Simulation::Simulation(const Settings& settings)
     : settings_(settings), scene_(settings.limits), state_(startOf(scene_)) {}
 
+const State& Simulation::state() const {
+  if (integrator_is_ahead_) integrator_->give(state_);
+  integrator_is_ahead_ = false;
+  return state_;
+}
+
+/// The present state, which the integrator is to take over anew.
+State& Simulation::changeState() {
+  state();
+  integrator_has_state_ = false;
+  return state_;
+}
+
 void Simulation::changed() {
+  changeState().dissipated = 0;
   system_.reset();
   integrator_.reset();
   account_.reset();
-  state_.dissipated = 0;
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {
-  const auto before = state_.positions.cols();
+  const auto before = state().positions.cols();
   const auto count = before + static_cast<Eigen::Index>(particles.size());
   State grown = state_;
   grown.positions.conservativeResize(Eigen::NoChange, count);
@@ -48,34 +61,35 @@ std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> partic
 void Simulation::setParticles(const std::vector<std::uint32_t>& ids,
                               std::vector<Particle> particles) {
   for (const std::size_t i : scene_.setParticles(ids, std::move(particles))) {
-    place(scene_.particles().item(i), i, state_);
+    place(scene_.particles().item(i), i, changeState());
   }
   changed();
 }
 
 std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
   const Scene::Removal removal = scene_.removeParticles(ids);
+  State& state = changeState();
   Eigen::Index kept = 0;
   for (std::size_t i = 0; i < removal.particles.size(); ++i) {
     if (removal.particles[i]) continue;
-    state_.positions.col(kept) = state_.positions.col(i);
-    state_.angular_velocities.col(kept) = state_.angular_velocities.col(i);
+    state.positions.col(kept) = state.positions.col(i);
+    state.angular_velocities.col(kept) = state.angular_velocities.col(i);
     ++kept;
   }
-  state_.positions.conservativeResize(Eigen::NoChange, kept);
-  state_.angular_velocities.conservativeResize(Eigen::NoChange, kept);
+  state.positions.conservativeResize(Eigen::NoChange, kept);
+  state.angular_velocities.conservativeResize(Eigen::NoChange, kept);
   changed();
   return removal.springs;
 }
 
 SpringIds Simulation::addSprings(SpringLists springs) {
-  SpringIds ids = scene_.addSprings(std::move(springs), state_.positions);
+  SpringIds ids = scene_.addSprings(std::move(springs), state().positions);
   changed();
   return ids;
 }
 
 void Simulation::setSprings(const SpringIds& ids, SpringLists springs) {
-  scene_.setSprings(ids, std::move(springs), state_.positions);
+  scene_.setSprings(ids, std::move(springs), state().positions);
   changed();
 }
 
@@ -100,33 +114,37 @@ void Simulation::load(SceneFile file) {
 }
 
 void Simulation::begin(State start) {
-  state_ = std::move(start);
+  changeState() = std::move(start);
   changed();
 }
 
-void Simulation::step() {
+void Simulation::step(std::uint64_t steps) {
   account();  // begins before anything moves
   if (!integrator_) {
     integrator_ = makeIntegrator(system(), settings_.method, settings_.time_step);
   }
-  integrator_->step(state_);
+  if (!integrator_has_state_) integrator_->take(state_);
+  integrator_has_state_ = true;
+  integrator_is_ahead_ = true;
+  integrator_->advance(steps);
 }
 
 void Simulation::settle(const Points& positions) {
-  state_.positions = positions;
-  state_.angular_velocities.setZero();
-  state_.dissipated = 0;
+  State& state = changeState();
+  state.positions = positions;
+  state.angular_velocities.setZero();
+  state.dissipated = 0;
   account_.reset();
 }
 
 void Simulation::restore(State state, std::shared_ptr<Account> account) {
-  state_ = std::move(state);
+  changeState() = std::move(state);
   account_ = std::move(account);
 }
 
 Scene Simulation::presentScene() const {
   Scene present = scene_;
-  present.place(state_.positions, state_.angular_velocities);
+  present.place(state().positions, state().angular_velocities);
   return present;
 }
 
@@ -136,7 +154,7 @@ std::shared_ptr<const System> Simulation::system() {
 }
 
 std::shared_ptr<Account> Simulation::account() {
-  if (!account_) account_ = std::make_shared<Account>(*system(), state_);
+  if (!account_) account_ = std::make_shared<Account>(*system(), state());
   return account_;
 }
 

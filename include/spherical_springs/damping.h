@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,16 @@ class Damping {
   bool none() const { return !viscous_any_ && dampers_.empty(); }
   bool hasViscous() const { return viscous_any_; }
   bool hasDampers() const { return !dampers_.empty(); }
+
+  /// What viscous damping does to one particle over a kick, exactly.
+  struct ViscousFlow {
+    double decay;                 ///< factor of the velocity
+    double gain;                  ///< velocity by a torque
+    std::array<double, 3> taken;  ///< energy by w . w, w . torque and torque . torque
+  };
+
+  /// Of the particle at an index, over `duration` [s], which may be negative.
+  ViscousFlow viscousFlow(Eigen::Index particle, double duration) const;
 
   /// A bound of the fastest decay [1/s], by Gershgorin's circles of M^-1 D.
   double fastestRate(const std::vector<Vector3>& gradients) const;

@@ -1,6 +1,7 @@
 // Stepping through time.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -26,13 +27,26 @@ int orderOf(IntegrationMethod method);
 /// implicit_euler.
 double stabilityLimit(IntegrationMethod method);
 
+/// Steps a state of its own: as it likes it best, until somebody reads it. The same steps give the
+/// same bits however they are cut into calls and whatever is read in between.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// One step. A function of the state alone, so that the same steps give the same bits however
-  /// they are cut into calls.
-  virtual void step(State& state) = 0;
+  /// Takes over a state.
+  virtual void take(const State& state) = 0;
+
+  virtual void advance(std::uint64_t steps) = 0;
+
+  /// Puts the present state into `state`.
+  virtual void give(State& state) const = 0;
+
+  /// One step of a state.
+  void step(State& state) {
+    take(state);
+    advance(1);
+    give(state);
+  }
 };
 
 /// `time_step`: [s], above 0.

@@ -38,8 +38,8 @@ class Simulation {
   void reset();               ///< Every particle where it was last added or set, time 0.
   void load(SceneFile file);  ///< In place of the present scene.
 
-  /// One step of the settings' time step.
-  void step();
+  /// Steps of the settings' time step.
+  void step(std::uint64_t steps = 1);
 
   /// Puts the particles, at rest, where a relaxation has brought them.
   void settle(const Points& positions);
@@ -49,7 +49,7 @@ class Simulation {
 
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return scene_; }
-  const State& state() const { return state_; }
+  const State& state() const;
   Scene presentScene() const;  ///< with the particles where they are now
 
   std::shared_ptr<const System> system();
@@ -57,12 +57,15 @@ class Simulation {
   std::shared_ptr<Account> begunAccount() const { return account_; }  ///< none before first use
 
  private:
+  State& changeState();
   void begin(State start);
   void changed();
 
   Settings settings_;
   Scene scene_;
-  State state_;
+  mutable State state_;
+  mutable bool integrator_is_ahead_ = false;  // of the state
+  bool integrator_has_state_ = false;
   // Made when first needed after a change.
   std::shared_ptr<const System> system_;
   std::unique_ptr<Integrator> integrator_;

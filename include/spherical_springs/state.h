@@ -6,10 +6,8 @@
 
 namespace spherical_springs::core {
 
-/// What changes when time goes on. Columns are particles in the order of their ids.
-struct State {
-  Points positions;           ///< unit vectors
-  Points angular_velocities;  ///< [rad/s], each normal to its position
+/// How far stepping has come.
+struct Progress {
   double time = 0;            ///< simulated [s]
   double time_rounding = 0;   ///< what adding up the steps has rounded away of the time [s]
   std::uint64_t steps = 0;    ///< since time was last 0
@@ -17,13 +15,19 @@ struct State {
   double dissipated = 0;                ///< energy taken out by damping since the account began [J]
 };
 
+/// What changes when time goes on. Columns are particles in the order of their ids.
+struct State : Progress {
+  Points positions;           ///< unit vectors
+  Points angular_velocities;  ///< [rad/s], each normal to its position
+};
+
 /// Counts one step of `time_step` [s], with Kahan's summation of the time.
-inline void countStep(double time_step, State& state) {
-  const double added = time_step - state.time_rounding;
-  const double sum = state.time + added;
-  state.time_rounding = (sum - state.time) - added;
-  state.time = sum;
-  ++state.steps;
+inline void countStep(double time_step, Progress& progress) {
+  const double added = time_step - progress.time_rounding;
+  const double sum = progress.time + added;
+  progress.time_rounding = (sum - progress.time) - added;
+  progress.time = sum;
+  ++progress.steps;
 }
 
 }  // namespace spherical_springs::core

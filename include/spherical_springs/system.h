@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "spherical_springs/damping.h"
@@ -29,6 +30,8 @@ struct PotentialEnergies : PerKind<EnergyOf> {
 
 /// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
 /// of their ids, and springs name particles by index.
+class Layout;
+
 class System {
  public:
   struct Options {
@@ -53,6 +56,9 @@ class System {
   const SpringList<Spring>& springs() const {
     return springs_.get<Spring>();
   }
+
+  /// Where stepping has particles and springs; made when first asked for, for any thread.
+  std::shared_ptr<const Layout> layout() const;
 
   /// What one evaluation at some positions leaves for the next use of it; reused to save memory.
   struct Workspace {
@@ -94,6 +100,8 @@ class System {
   // The ends of springs at each particle: those of particle i are at ends_[first_end_[i]] and on,
   // so that torques are summed in the same order however many threads do it.
   std::vector<std::uint32_t> first_end_, ends_;
+  struct LayoutOnDemand;
+  std::shared_ptr<LayoutOnDemand> layout_;
 };
 
 }  // namespace spherical_springs::core

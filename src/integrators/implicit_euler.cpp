@@ -11,7 +11,7 @@ ImplicitEuler::ImplicitEuler(std::shared_ptr<const System> system, double time_s
       time_step_(time_step),
       inertia_(system_->masses() / (time_step * time_step)) {}
 
-void ImplicitEuler::step(State& state) {
+void ImplicitEuler::stepOnce(State& state) {
   const double before = system_->potential(state.positions).total() +
                         system_->kinetic(state.angular_velocities) + state.dissipated;
   damp(state);

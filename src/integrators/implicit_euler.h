@@ -3,19 +3,19 @@
 #include <memory>
 
 #include "../minimisation/newton.h"
-#include "spherical_springs/integrator.h"
+#include "plain_integrator.h"
 
 namespace spherical_springs::core {
 
 /// Each step minimises the springs' energy + sum of m d^2 / (2 dt^2), with d the distance from
 /// where inertia alone would carry the particle: large steps in the sense of Baraff and Witkin
 /// 1998.
-class ImplicitEuler : public Integrator {
+class ImplicitEuler : public PlainIntegrator {
  public:
   ImplicitEuler(std::shared_ptr<const System> system, double time_step);
-  void step(State& state) override;
 
  private:
+  void stepOnce(State& state) override;
   void damp(State& state);
   Points inertialPositions(const State& state) const;
   bool minimise(const Points& positions, const Points& targets);

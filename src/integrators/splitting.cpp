@@ -27,20 +27,27 @@ const SplittingScheme& splittingScheme(IntegrationMethod method) {
   return method == IntegrationMethod::verlet ? kVerlet : kFourthOrder;
 }
 
+// Above second order some kicks go back in time, and damping with them: where it decays within a
+// step that would amplify it without bound. A verlet step is stable there.
+const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, const Damping& damping,
+                                          const std::vector<Vector3>& gradients,
+                                          double time_step) {
+  if (scheme.order <= 2 || damping.none()) return scheme;
+  const bool resolved = damping.fastestRate(gradients) * time_step <= 1;
+  return resolved ? scheme : splittingScheme(IntegrationMethod::verlet);
+}
+
 SplittingIntegrator::SplittingIntegrator(std::shared_ptr<const System> system,
                                          const SplittingScheme& scheme, double time_step)
     : system_(std::move(system)), scheme_(scheme), time_step_(time_step) {}
 
-// Above second order some kicks go back in time, and damping with them: where it decays within a
-// step that would amplify it without bound. A verlet step is stable there.
 const SplittingScheme& SplittingIntegrator::schemeFor(const State& state) {
-  if (scheme_.order <= 2 || system_->damping().none()) return scheme_;
+  if (scheme_.order <= 2) return scheme_;
   system_->evaluate(state.positions, workspace_);
-  const bool resolved = system_->damping().fastestRate(workspace_.end_gradients) * time_step_ <= 1;
-  return resolved ? scheme_ : splittingScheme(IntegrationMethod::verlet);
+  return schemeUnderDamping(scheme_, system_->damping(), workspace_.end_gradients, time_step_);
 }
 
-void SplittingIntegrator::step(State& state) {
+void SplittingIntegrator::stepOnce(State& state) {
   const SplittingScheme& scheme = schemeFor(state);
   for (std::size_t stage = 0; stage < scheme.kick.size(); ++stage) {
     drift(scheme.drift[stage] * time_step_, state);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "spherical_springs/integrator.h"
+#include "plain_integrator.h"
 
 namespace spherical_springs::core {
 
@@ -19,13 +19,19 @@ struct SplittingScheme {
 
 const SplittingScheme& splittingScheme(IntegrationMethod method);
 
-class SplittingIntegrator : public Integrator {
+/// The scheme to take in place of `scheme` where damping with `gradients`, as `Damping` has them,
+/// decays within a step.
+const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, const Damping& damping,
+                                          const std::vector<Vector3>& gradients, double time_step);
+
+/// A splitting scheme for every system, one spring at a time.
+class SplittingIntegrator : public PlainIntegrator {
  public:
   SplittingIntegrator(std::shared_ptr<const System> system, const SplittingScheme& scheme,
                       double time_step);
-  void step(State& state) override;
 
  private:
+  void stepOnce(State& state) override;
   const SplittingScheme& schemeFor(const State& state);
   void drift(double duration, State& state) const;
   void kick(double duration, State& state);

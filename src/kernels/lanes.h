@@ -63,6 +63,9 @@ inline Lanes squareRoot(const Lanes& x) {
 }
 
 inline bool any(const LaneMask& mask) {
+#if defined(__AVX__) && !defined(__AVX512F__)
+  return __builtin_ia32_movmskpd256(Four(mask)) != 0;
+#endif
   std::int64_t found = 0;
   for (int k = 0; k < kLanes; ++k) found |= mask[k];
   return found != 0;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "../stepping/motion.h"
+#include "splitting.h"
+
+namespace spherical_springs::core {
+
+/// A splitting scheme, for systems without damped springs: block by block, several springs at a
+/// time.
+class BlockedSplitting : public Integrator {
+ public:
+  BlockedSplitting(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
+                   double time_step);
+  void take(const State& state) override;
+  void advance(std::uint64_t steps) override;
+  void give(State& state) const override;
+
+ private:
+  void stepOnce(double next_drift);
+
+  const SplittingScheme& scheme_;
+  double time_step_;
+  Motion motion_;
+  Progress progress_;
+};
+
+}  // namespace spherical_springs::core

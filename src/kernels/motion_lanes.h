@@ -1,0 +1,107 @@
+// The motion of particles in step_kernels.h, for whatever level of instruction set a file that
+// includes this is compiled for.
+#pragma once
+
+#include <math.h>
+
+#include "lanes.h"
+#include "rows.h"
+#include "step_lanes.h"
+
+namespace {
+
+using spherical_springs::core::Particles;
+using spherical_springs::core::ViscousKick;
+
+inline Lanes3 loadVelocities(const Particles& particles, std::uint32_t first) {
+  return {load(particles.velocities[0] + first), load(particles.velocities[1] + first),
+          load(particles.velocities[2] + first)};
+}
+
+inline void store(const Lanes& values, double* to) {
+  __builtin_memcpy(to, &values, sizeof(values));
+}
+
+inline void storeVelocities(const Lanes3& v, const Particles& particles, std::uint32_t first) {
+  store(v.x, particles.velocities[0] + first);
+  store(v.y, particles.velocities[1] + first);
+  store(v.z, particles.velocities[2] + first);
+}
+
+void kick(const Particles& particles, double duration) {
+  for (std::uint32_t first = 0; first < particles.count; first += kLanes) {
+    const Lanes3 torque = cross(loadRows(particles.positions + kRowLength * first),
+                                loadRows(particles.forces + kRowLength * first));
+    const Lanes gain = duration * load(particles.inverse_masses + first);
+    storeVelocities(loadVelocities(particles, first) + gain * torque, particles, first);
+  }
+}
+
+double viscousKick(const Particles& particles, const ViscousKick& kick) {
+  Lanes taken = {};
+  for (std::uint32_t first = 0; first < particles.count; first += kLanes) {
+    const Lanes3 torque = cross(loadRows(particles.positions + kRowLength * first),
+                                loadRows(particles.forces + kRowLength * first));
+    const Lanes3 velocity = loadVelocities(particles, first);
+    taken += load(kick.taken[0] + first) * dot(velocity, velocity) +
+             load(kick.taken[1] + first) * dot(velocity, torque) +
+             load(kick.taken[2] + first) * dot(torque, torque);
+    storeVelocities(load(kick.decay + first) * velocity + load(kick.gain + first) * torque,
+                    particles, first);
+  }
+  return sum(taken);
+}
+
+struct LaneTurn {
+  Lanes cosine, sinc;
+};
+
+/// As `turnBy` in src/sphere.cpp.
+inline LaneTurn turnBy(const Lanes& squared_angle) {
+  constexpr double kSmall = 0.25;
+  constexpr double kCosine[] = {1,           -1. / 2,       1. / 24,        -1. / 720,
+                                1. / 40320,  -1. / 3628800, 1. / 479001600, -1. / 87178291200};
+  constexpr double kSinc[] = {1,           -1. / 6,        1. / 120,        -1. / 5040,
+                              1. / 362880, -1. / 39916800, 1. / 6227020800, -1. / 1307674368000};
+  LaneTurn turn = {polynomial(kCosine, squared_angle), polynomial(kSinc, squared_angle)};
+  if (!any(squared_angle > kSmall)) return turn;
+  for (int k = 0; k < kLanes; ++k) {
+    if (!(squared_angle[k] > kSmall)) continue;
+    const double angle = ::sqrt(squared_angle[k]);
+    turn.cosine[k] = ::cos(angle);
+    turn.sinc[k] = ::sin(angle) / angle;
+  }
+  return turn;
+}
+
+void drift(const Particles& particles, double duration) {
+  for (std::uint32_t first = 0; first < particles.count; first += kLanes) {
+    const Lanes3 position = loadRows(particles.positions + kRowLength * first);
+    const Lanes3 velocity = loadVelocities(particles, first);
+    const Lanes3 rotation = duration * velocity;
+    const Lanes squared_angle = dot(rotation, rotation);
+    const LaneTurn turn = turnBy(squared_angle);
+    Lanes3 moved = turn.cosine * position + turn.sinc * cross(rotation, position);
+    moved = (1.5 - 0.5 * dot(moved, moved)) * moved;
+    moved = select(squared_angle == 0, position, moved);
+    storeRows(moved, particles.moved + kRowLength * first);
+    // Rounding alone has put a part along the position.
+    storeVelocities(velocity - dot(moved, velocity) * moved, particles, first);
+  }
+}
+
+}  // namespace
+
+namespace spherical_springs::core {
+
+/// This file's own.
+static constexpr StepKernels kKernels = {
+    addAll<ShortArcs, addAnyArcs>,
+    {addAll<ShortTriangles<0>, addAnyTriangles<0>>,
+     addAll<ShortTriangles<1>, addAnyTriangles<1>>,
+     addAll<ShortTriangles<2>, addAnyTriangles<2>>},
+    kick,
+    viscousKick,
+    drift};
+
+}  // namespace spherical_springs::core

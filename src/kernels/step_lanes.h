@@ -1,0 +1,391 @@
+// The forces of step_kernels.h, for whatever level of instruction set a file that includes this is
+// compiled for. The formulas are those of src/springs.
+#pragma once
+
+#include "lanes.h"
+#include "rows.h"
+#include "step_kernels.h"
+
+namespace {
+
+using spherical_springs::core::Elements;
+using spherical_springs::core::SpringConstants;
+
+constexpr double kPi = 3.14159265358979323846;
+
+[[gnu::always_inline]] inline Lanes load(const double* values) {
+  Lanes result;
+  __builtin_memcpy(&result, values, sizeof(result));
+  return result;
+}
+
+[[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+[[gnu::always_inline]] inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline Lanes absolute(const Lanes& x) { return select(x < 0, -x, x); }
+[[gnu::always_inline]] inline Lanes select0(const LaneMask& mask, const Lanes& a) { return mask ? a : Lanes{}; }
+[[gnu::always_inline]] inline Lanes3 select(const LaneMask& mask, const Lanes3& a, const Lanes3& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+/// Horner's scheme for even and odd powers apart, which halves the wait.
+template <std::size_t N>
+[[gnu::always_inline]] inline Lanes polynomialByParity(const double (&coefficients)[N], const Lanes& x) {
+  constexpr std::size_t kLastEven = (N - 1) & ~std::size_t(1), kLastOdd = (N - 2) | 1;
+  const Lanes square = x * x;
+  Lanes even = coefficients[kLastEven] - Lanes{}, odd = coefficients[kLastOdd] - Lanes{};
+  for (std::size_t i = kLastEven; i >= 2; i -= 2) even = coefficients[i - 2] + square * even;
+  for (std::size_t i = kLastOdd; i >= 3; i -= 2) odd = coefficients[i - 2] + square * odd;
+  return even + x * odd;
+}
+
+/// theta / sin(theta) for sin^2(theta / 2) up to 1/64, to 2e-17; a Chebyshev interpolant.
+[[gnu::always_inline]] inline Lanes overSineRatio(const Lanes& h) {
+  constexpr double kCoefficients[] = {1.0,
+                                      0.6666666666666083,
+                                      0.5333333333930259,
+                                      0.45714283425600294,
+                                      0.40635338010299754,
+                                      0.3690184998994978,
+                                      0.35895485532882426};
+  return polynomialByParity(kCoefficients, h);
+}
+
+/// atan(u) / u for squares of u up to 2e-4, to 4e-18; a Chebyshev interpolant.
+[[gnu::always_inline]] inline Lanes smallArctangentRatio(const Lanes& square) {
+  constexpr double kCoefficients[] = {1.0, -0.33333333333303766, 0.19999999327995524,
+                                      -0.14280826606559252};
+  return polynomial(kCoefficients, square);
+}
+
+constexpr double kShortest = 1e-16;     // of a quarter of a squared chord, and of its supplement
+constexpr double kAntipodal = 0.25;     // of the squared norm of a triangle
+constexpr double kShort = 1. / 16;      // of a squared chord, for the short way
+constexpr double kSmallest = 1e-12;     // of the sum of a triangle's squared edges, likewise
+constexpr double kSmall = 1.5 * kShort; // so that no edge is longer than short
+
+/// Constants of the springs of a batch.
+struct LaneConstants {
+  Lanes rest, stiffness;
+
+  LaneConstants(const SpringConstants& springs, std::uint32_t first)
+      : rest(load(springs.rest + first)), stiffness(load(springs.stiffness + first)) {}
+};
+
+// --- arcs and triangles of less than half a radian or so ---
+
+[[gnu::always_inline]] inline Lanes sineOf(const Lanes& squared_chord) {
+  return squareRoot(squared_chord * (1 - 0.25 * squared_chord));
+}
+
+[[gnu::always_inline]] inline Lanes shortPull(const LaneConstants& spring, const Lanes& squared_chord,
+                       const Lanes& over_sine) {
+  return spring.stiffness * (overSineRatio(0.25 * squared_chord) - spring.rest * over_sine);
+}
+
+// --- of any size ---
+
+/// atan2(y, x)
+[[gnu::always_inline]] inline Lanes arctangent(const Lanes& y, const Lanes& x) {
+  constexpr double kTangentOfEighth = 0.41421356237309503;  // of pi / 8
+  const Lanes up = absolute(y), across = absolute(x);
+  const LaneMask steep = up > across;
+  const Lanes more = select(steep, up, across), less = select(steep, across, up);
+  const LaneMask diagonal = less > kTangentOfEighth * more;
+  const Lanes u = select(diagonal, less - more, less) / select(diagonal, less + more, more);
+  Lanes angle = u * arctangentRatio(u * u) + select0(diagonal, kPi / 4 - Lanes{});
+  angle = select(steep, kPi / 2 - angle, angle);
+  angle = select(x < 0, kPi - angle, angle);
+  return select(y < 0, -angle, angle);
+}
+
+/// The force on `a` is pull `beside`, whose cross product with `a` is a x b and does not cancel.
+struct AnyArc {
+  Lanes pull;  ///< 0 where it is hard
+  Lanes3 beside;
+  LaneMask is_far;  ///< the force on `b` is the same; elsewhere the opposite
+  LaneMask hard;
+};
+
+inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spring) {
+  const Lanes3 chord = b - a, sum = a + b;
+  const Lanes near = 0.25 * dot(chord, chord), far = 0.25 * dot(sum, sum);
+  const LaneMask is_near = near < 0.25, is_far = far < 0.25;
+  const Lanes cosine = far - near;
+  const Lanes square = select(is_near, near, select(is_far, far, cosine * cosine));
+  const Lanes root = select(is_near | is_far, squareRoot(square), cosine);
+  const Lanes arcsine = root * arcsineRatio(square);
+  const Lanes angle =
+      select(is_near, 2 * arcsine, select(is_far, kPi - 2 * arcsine, kPi / 2 - arcsine));
+  const LaneMask hard = ~((near >= kShortest) & (far >= kShortest));
+  const Lanes sine = 2 * squareRoot(near * far);
+  const Lanes pull = select(hard, Lanes{}, spring.stiffness * (angle - spring.rest) / sine);
+  return {pull, select(is_far, sum, chord), is_far, hard};
+}
+
+/// Factors of a triangle's forces: 2 stiffness C / squared norm, times denominator and triple
+/// product.
+struct AnyTriangle {
+  Lanes beta, alpha;  ///< 0 where it is hard
+  LaneMask hard;
+};
+
+inline AnyTriangle anyTriangle(const Lanes& triple_product, const Lanes& denominator,
+                               const LaneConstants& spring) {
+  const Lanes squared_norm = triple_product * triple_product + denominator * denominator;
+  const LaneMask hard = ~(squared_norm >= kAntipodal);
+  Lanes difference = 2 * arctangent(triple_product, denominator) - spring.rest;
+  difference -= select0(difference > 2 * kPi, 4 * kPi - Lanes{});
+  difference += select0(difference < -2 * kPi, 4 * kPi - Lanes{});
+  const Lanes pull = select0(~hard, 2 * spring.stiffness * difference / squared_norm);
+  return {pull * denominator, pull * triple_product, hard};
+}
+
+// --- both ---
+
+struct TriangleEdges {
+  Lanes3 ab, bc, ca;
+  Lanes squared_ab, squared_bc, squared_ca;
+  Lanes3 area;  ///< a x b + b x c + c x a
+  Lanes triple_product, denominator;
+
+  TriangleEdges(const Lanes3& a, const Lanes3& b, const Lanes3& c)
+      : ab(b - a),
+        bc(c - b),
+        ca(a - c),
+        squared_ab(dot(ab, ab)),
+        squared_bc(dot(bc, bc)),
+        squared_ca(dot(ca, ca)),
+        area(cross(ca, ab)),
+        triple_product(dot(a, area)),
+        denominator(4 - 0.5 * (squared_ab + squared_bc + squared_ca)) {}
+};
+
+/// Copies member by member: as a whole the compiler would copy it in pieces of half a register,
+/// and reading them back as whole ones stalls.
+inline void put(const Lanes3& v, Lanes3& to) {
+  to.x = v.x;
+  to.y = v.y;
+  to.z = v.z;
+}
+
+/// Triangles by the batch: first what they are, then how their edges pull, then the forces, so that
+/// the processor has always enough to do that does not wait for anything.
+///
+/// With all three vertices on the unit sphere the solid angle is a function of the squared edges, so
+/// its forces are along the edges, as those of arcs are. Its derivative by one of them has the
+/// triple product below the line: slivers are left to `addAnyTriangles`.
+template <int kArcs>
+class ShortTriangles {
+ public:
+  ShortTriangles(const Elements& elements, const double* positions, double* forces)
+      : elements_(elements), positions_(positions), forces_(forces) {}
+
+  /// False where a triangle or arc is not short, or a triangle a sliver.
+  [[gnu::always_inline]] bool add(std::uint32_t first) {
+    const TriangleEdges e(gatherRows(positions_, elements_.ends[0] + first),
+                          gatherRows(positions_, elements_.ends[1] + first),
+                          gatherRows(positions_, elements_.ends[2] + first));
+    first_[count_] = first;
+    put(e.ab, ab_[count_]);
+    put(e.bc, bc_[count_]);
+    put(e.ca, ca_[count_]);
+    squared_ab_[count_] = e.squared_ab;
+    squared_bc_[count_] = e.squared_bc;
+    squared_ca_[count_] = e.squared_ca;
+    triple_product_[count_] = e.triple_product;
+    if (any(isOther(e, load(elements_.springs[0].rest + first)))) return false;
+    if (++count_ == kMost) flush();
+    return true;
+  }
+
+  void flush() {
+    for (int i = 0; i < count_; ++i) computeInverses(i);
+    for (int i = 0; i < count_; ++i) computePulls(i);
+    for (int i = 0; i < count_; ++i) addForces(i);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kMost = 8;
+
+  [[gnu::always_inline]] static LaneMask isOther(const TriangleEdges& e, const Lanes& rest) {
+    constexpr double kThinnest = 1. / 24;  // twice the area by the sum of the squared edges
+    constexpr double kLargestRest = 5;     // no area below 1 is half of 4 pi away from it
+    const Lanes sum = e.squared_ab + e.squared_bc + e.squared_ca;
+    return (sum > kSmall) | (sum < kSmallest) |
+           (absolute(e.triple_product) < kThinnest * sum) | (absolute(rest) > kLargestRest);
+  }
+
+  // One division for all.
+  [[gnu::always_inline]] void computeInverses(int i) {
+    const Lanes ab = squared_ab_[i], bc = squared_bc_[i], ca = squared_ca_[i];
+    const Lanes alpha = triple_product_[i];
+    const Lanes beta = 4 - 0.5 * (ab + bc + ca);
+    const Lanes q = (alpha * beta) * (alpha * alpha + beta * beta);
+    if constexpr (kArcs == 0) {
+      over_q_[i] = 1 / q;
+    } else if constexpr (kArcs == 1) {
+      const Lanes sine = sineOf(ab);
+      const Lanes over_all = 1 / (sine * q);
+      over_q_[i] = over_all * sine;
+      over_sine_ab_[i] = over_all * q;
+    } else {
+      const Lanes sine_ab = sineOf(ab), sine_bc = sineOf(bc);
+      const Lanes sines = sine_ab * sine_bc;
+      const Lanes over_all = 1 / (sines * q);
+      over_q_[i] = over_all * sines;
+      over_sine_ab_[i] = over_all * (q * sine_bc);
+      over_sine_bc_[i] = over_all * (q * sine_ab);
+    }
+  }
+
+  // d(solid angle) = 2 (beta d alpha - alpha d beta) / (alpha^2 + beta^2), beta = 4 - half the sum
+  // of the squared edges, and alpha^2 is Gram's determinant.
+  [[gnu::always_inline]] void computePulls(int i) {
+    const std::uint32_t first = first_[i];
+    const LaneConstants spring(elements_.springs[0], first);
+    const Lanes ab = squared_ab_[i], bc = squared_bc_[i], ca = squared_ca_[i];
+    const Lanes alpha = triple_product_[i], over_q = over_q_[i];
+    const Lanes half_sum = 0.5 * (ab + bc + ca);
+    const Lanes beta = 4 - half_sum;
+    const Lanes alpha_alpha = alpha * alpha, beta_beta = beta * beta;
+    const Lanes u = alpha_alpha * ((alpha_alpha + beta_beta) * over_q);  // alpha / beta
+    const Lanes difference = 2 * u * smallArctangentRatio(u * u) - spring.rest;
+    const Lanes pull = 2 * spring.stiffness * difference * over_q;
+    const Lanes across = pull * beta_beta;  // 2 stiffness C beta / (alpha (alpha^2 + beta^2))
+    const Lanes along = pull * (alpha_alpha * beta);
+    Lanes along_ab = along, along_bc = along;
+    if (kArcs > 0) along_ab += shortPull({elements_.springs[1], first}, ab, over_sine_ab_[i]);
+    if (kArcs > 1) along_bc += shortPull({elements_.springs[2], first}, bc, over_sine_bc_[i]);
+    const Lanes quarter_ab = 0.25 * ab, quarter_bc = 0.25 * bc;
+    pull_ab_[i] = across * (half_sum - ab - quarter_bc * ca) + along_ab;
+    pull_bc_[i] = across * (half_sum - bc - quarter_ab * ca) + along_bc;
+    pull_ca_[i] = across * (half_sum - ca - quarter_ab * bc) + along;
+  }
+
+  [[gnu::always_inline]] void addForces(int i) {
+    const std::uint32_t first = first_[i];
+    const Lanes3 ab = pull_ab_[i] * ab_[i], bc = pull_bc_[i] * bc_[i], ca = pull_ca_[i] * ca_[i];
+    addRows(ab - ca, forces_, elements_.ends[0] + first);
+    addRows(bc - ab, forces_, elements_.ends[1] + first);
+    addRows(ca - bc, forces_, elements_.ends[2] + first);
+  }
+
+  const Elements elements_;
+  const double* const positions_;
+  double* const forces_;
+  int count_ = 0;
+  std::uint32_t first_[kMost];
+  Lanes3 ab_[kMost], bc_[kMost], ca_[kMost];
+  Lanes squared_ab_[kMost], squared_bc_[kMost], squared_ca_[kMost], triple_product_[kMost];
+  Lanes over_q_[kMost], over_sine_ab_[kMost], over_sine_bc_[kMost];
+  Lanes pull_ab_[kMost], pull_bc_[kMost], pull_ca_[kMost];
+};
+
+inline Lanes3 negative(const Lanes3& a) { return {-a.x, -a.y, -a.z}; }
+
+inline void addArc(const AnyArc& arc, const LaneMask& hard, double* forces,
+                   const std::uint32_t* rows_a, const std::uint32_t* rows_b) {
+  const Lanes3 on_a = select0(~hard, arc.pull) * arc.beside;
+  addRows(on_a, forces, rows_a);
+  addRows(select(arc.is_far, on_a, negative(on_a)), forces, rows_b);
+}
+
+// At a the gradient is beta (b x c) - alpha (b + c), but for what is along a; and b x c is
+// a x (c - b) + area.
+template <int kArcs>
+LaneMask addAnyTriangles(const Elements& elements, std::uint32_t first, const double* positions,
+                         double* forces) {
+  const std::uint32_t* const rows[3] = {elements.ends[0] + first, elements.ends[1] + first,
+                                        elements.ends[2] + first};
+  const Lanes3 a = gatherRows(positions, rows[0]), b = gatherRows(positions, rows[1]),
+               c = gatherRows(positions, rows[2]);
+  const TriangleEdges e(a, b, c);
+  const AnyTriangle t =
+      anyTriangle(e.triple_product, e.denominator, {elements.springs[0], first});
+  LaneMask hard = t.hard;
+  AnyArc first_arc = {}, second_arc = {};
+  if (kArcs > 0) first_arc = anyArc(a, b, {elements.springs[1], first});
+  if (kArcs > 1) second_arc = anyArc(b, c, {elements.springs[2], first});
+  hard |= first_arc.hard | second_arc.hard;
+  if (kArcs > 0) addArc(first_arc, hard, forces, rows[0], rows[1]);
+  if (kArcs > 1) addArc(second_arc, hard, forces, rows[1], rows[2]);
+  const Lanes alpha = select0(~hard, t.alpha), beta = select0(~hard, t.beta);
+  const Lanes3 area = beta * e.area;
+  addRows(alpha * (e.ab - e.ca) - beta * cross(a, e.bc) - area, forces, rows[0]);
+  addRows(alpha * (e.bc - e.ab) - beta * cross(b, e.ca) - area, forces, rows[1]);
+  addRows(alpha * (e.ca - e.bc) - beta * cross(c, e.ab) - area, forces, rows[2]);
+  return hard;
+}
+
+/// The same for arcs alone.
+class ShortArcs {
+ public:
+  ShortArcs(const Elements& elements, const double* positions, double* forces)
+      : elements_(elements), positions_(positions), forces_(forces) {}
+
+  [[gnu::always_inline]] bool add(std::uint32_t first) {
+    const Lanes3 chord = gatherRows(positions_, elements_.ends[1] + first) -
+                         gatherRows(positions_, elements_.ends[0] + first);
+    const Lanes squared = dot(chord, chord);
+    first_[count_] = first;
+    put(chord, chord_[count_]);
+    squared_[count_] = squared;
+    if (any((squared < 4 * kShortest) | (squared > kShort))) return false;
+    if (++count_ == kMost) flush();
+    return true;
+  }
+
+  void flush() {
+    for (int i = 0; i < count_; ++i) {
+      pull_[i] = shortPull({elements_.springs[0], first_[i]}, squared_[i], 1 / sineOf(squared_[i]));
+    }
+    for (int i = 0; i < count_; ++i) {
+      const Lanes3 force = pull_[i] * chord_[i];
+      addRows(force, forces_, elements_.ends[0] + first_[i]);
+      addRows(negative(force), forces_, elements_.ends[1] + first_[i]);
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kMost = 8;
+
+  const Elements elements_;
+  const double* const positions_;
+  double* const forces_;
+  int count_ = 0;
+  std::uint32_t first_[kMost];
+  Lanes3 chord_[kMost];
+  Lanes squared_[kMost], pull_[kMost];
+};
+
+LaneMask addAnyArcs(const Elements& elements, std::uint32_t first, const double* positions,
+                    double* forces) {
+  const std::uint32_t* const a = elements.ends[0] + first;
+  const std::uint32_t* const b = elements.ends[1] + first;
+  const AnyArc arc =
+      anyArc(gatherRows(positions, a), gatherRows(positions, b), {elements.springs[0], first});
+  addArc(arc, arc.hard, forces, a, b);
+  return arc.hard;
+}
+
+using AddAny = LaneMask (*)(const Elements&, std::uint32_t, const double*, double*);
+
+template <class Short, AddAny kAddAny>
+std::uint32_t addAll(const Elements& elements, const double* positions, double* forces,
+                     std::uint32_t* hard) {
+  Short batches(elements, positions, forces);
+  std::uint32_t hard_count = 0;
+  for (std::uint32_t first = 0; first < elements.count; first += kLanes) {
+    if (batches.add(first)) continue;
+    const LaneMask mask = kAddAny(elements, first, positions, forces);
+    for (int k = 0; k < kLanes; ++k) {
+      if (mask[k] != 0) hard[hard_count++] = first + k;
+    }
+  }
+  batches.flush();
+  return hard_count;
+}
+
+}  // namespace

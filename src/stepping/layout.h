@@ -1,0 +1,98 @@
+// Particles and springs where the kernels want them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "../kernels/step_kernels.h"
+#include "elements.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+/// Elements of one sort, those of one patch after those of another.
+class ElementArrays {
+ public:
+  ElementArrays(int ends, int springs) : end_count_(ends), spring_count_(springs) {}
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(ends_[0].size()); }
+  Elements range(std::uint32_t begin, std::uint32_t end) const;
+
+  /// Makes room for `count` elements of no stiffness.
+  void grow(std::uint32_t count);
+
+  struct Constants {
+    double rest, stiffness;
+  };
+  void set(std::uint32_t index, const std::array<std::uint32_t, 3>& rows,
+           const std::array<Constants, 3>& constants);
+
+  std::size_t bytes() const;
+
+ private:
+  int end_count_, spring_count_;
+  std::array<std::vector<std::uint32_t>, 3> ends_;
+  std::array<std::vector<double>, 3> rest_, stiffness_;
+};
+
+/// A few hundred particles that are stepped together, and the springs that pull at them: those that
+/// join them with others are in each patch that has one of the ends.
+struct Patch {
+  std::uint32_t first_place, particle_count;  ///< in the order
+  std::uint32_t first_slot;                   ///< of its particles, in arrays over particles
+  std::uint32_t first_row, row_count;         ///< of its particles, then those of others
+  std::uint32_t first_guest;                  ///< of others, in the list of guests
+
+  struct Range {
+    std::uint32_t begin = 0, end = 0;
+  };
+  Range arcs;
+  std::array<Range, 3> triangles;
+  Range oriented;
+
+  std::uint32_t slotCount() const { return roundedUp(particle_count); }
+  static std::uint32_t roundedUp(std::uint32_t count) {
+    return (count + kGroup - 1) / kGroup * kGroup;
+  }
+};
+
+/// An oriented-angle spring whose `particles` are rows of its patch.
+struct OrientedArc {
+  std::array<std::uint32_t, 3> rows;
+  std::uint32_t spring;
+};
+
+class Layout {
+ public:
+  /// `positions`: where the particles are, or were, so that neighbours come to lie together.
+  Layout(const System& system, const Points& positions);
+
+  const std::vector<std::uint32_t>& order() const { return order_; }
+  const std::vector<Patch>& patches() const { return patches_; }
+  std::uint32_t slotCount() const { return slot_count_; }
+  std::uint32_t rowCount() const { return row_count_; }
+  std::uint32_t largestPatch() const { return largest_patch_; }  ///< [rows]
+  std::uint32_t mostElements() const { return most_elements_; }  ///< of one sort in a patch
+
+  /// Of the particle that a guest is, its row at home.
+  const std::vector<std::uint32_t>& guests() const { return guests_; }
+  const ElementArrays& arcs() const { return arcs_; }
+  const ElementArrays& triangles(int arcs) const { return triangles_[arcs]; }
+  const std::vector<OrientedArc>& orientedArcs() const { return oriented_; }
+
+  std::size_t bytes() const;
+
+ private:
+  class Builder;
+
+  std::vector<std::uint32_t> order_;
+  std::vector<Patch> patches_;
+  std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0, most_elements_ = 0;
+  std::vector<std::uint32_t> guests_;
+  ElementArrays arcs_{2, 1};
+  std::array<ElementArrays, 3> triangles_{ElementArrays{3, 1}, {3, 2}, {3, 3}};
+  std::vector<OrientedArc> oriented_;
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,218 @@
+#include "motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "../parallel.h"
+
+namespace spherical_springs::core {
+
+Motion::Motion(std::shared_ptr<const System> system, std::shared_ptr<const Layout> layout,
+               const StepKernels& kernels)
+    : system_(std::move(system)),
+      layout_(std::move(layout)),
+      kernels_(kernels),
+      threads_(layout_->patches().size() > 1 ? system_->threads() : 1),
+      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}),
+      moved_(positions_),
+      inverse_masses_(layout_->slotCount(), 0) {
+  for (auto& component : velocities_) component.assign(layout_->slotCount(), 0);
+  if (system_->damping().hasViscous()) dissipated_.assign(layout_->patches().size(), 0);
+  for (const Patch& patch : layout_->patches()) {
+    for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+      inverse_masses_[patch.first_slot + i] =
+          system_->inverseMasses()[layout_->order()[patch.first_place + i]];
+    }
+  }
+}
+
+void Motion::take(const State& state) {
+  for (const Patch& patch : layout_->patches()) {
+    for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+      const std::uint32_t particle = layout_->order()[patch.first_place + i];
+      for (int k = 0; k < 3; ++k) {
+        positions_[patch.first_row + i].values[k] = state.positions(k, particle);
+        velocities_[k][patch.first_slot + i] = state.angular_velocities(k, particle);
+      }
+    }
+  }
+}
+
+void Motion::give(State& state) const {
+  const auto count = static_cast<Eigen::Index>(layout_->order().size());
+  state.positions.resize(3, count);
+  state.angular_velocities.resize(3, count);
+  for (const Patch& patch : layout_->patches()) {
+    for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+      const std::uint32_t particle = layout_->order()[patch.first_place + i];
+      for (int k = 0; k < 3; ++k) {
+        state.positions(k, particle) = positions_[patch.first_row + i].values[k];
+        state.angular_velocities(k, particle) = velocities_[k][patch.first_slot + i];
+      }
+    }
+  }
+}
+
+Particles Motion::particlesOf(const Patch& patch, const std::vector<Row>& positions,
+                              std::vector<Row>& moved, const Row* forces) {
+  return {positions[patch.first_row].values,
+          moved[patch.first_row].values,
+          {&velocities_[0][patch.first_slot], &velocities_[1][patch.first_slot],
+           &velocities_[2][patch.first_slot]},
+          forces == nullptr ? nullptr : forces->values,
+          &inverse_masses_[patch.first_slot],
+          patch.slotCount()};
+}
+
+void Motion::drift(double duration) {
+  const auto& patches = layout_->patches();
+  forOnThreads(patches.size(), threads_, [&](std::ptrdiff_t b) {
+    if (patches[b].particle_count == 0) return;
+    kernels_.drift(particlesOf(patches[b], positions_, positions_, nullptr), duration);
+  });
+}
+
+double Motion::kickAndDrift(double kick, const Drifts& drifts) {
+  const auto& patches = layout_->patches();
+  const bool damped = system_->damping().hasViscous();
+  const Viscous* const viscous = damped ? &viscousFor(kick) : nullptr;
+  forOnThreads(patches.size(), threads_, [&](std::ptrdiff_t b) {
+    if (patches[b].particle_count == 0) return;
+    const double taken = kickAndDriftPatch(patches[b], kick, viscous, drifts);
+    if (damped) dissipated_[b] = taken;
+  });
+  positions_.swap(moved_);
+  double taken = 0;
+  for (const double of_patch : dissipated_) taken += of_patch;
+  return taken;
+}
+
+double Motion::kickAndDriftPatch(const Patch& patch, double kick, const Viscous* viscous,
+                                 const Drifts& drifts) {
+  static thread_local Scratch scratch;
+  if (scratch.forces.size() < layout_->largestPatch()) {
+    scratch.forces.resize(layout_->largestPatch());
+  }
+  if (scratch.hard.size() < layout_->mostElements()) scratch.hard.resize(layout_->mostElements());
+  welcomeGuests(patch);
+  std::fill_n(scratch.forces.begin(), patch.row_count, Row{});
+  addForces(patch, scratch);
+
+  Particles particles = particlesOf(patch, positions_, moved_, scratch.forces.data());
+  double taken = 0;
+  if (viscous != nullptr) {
+    const std::uint32_t at = patch.first_slot;
+    taken = kernels_.viscous_kick(
+        particles, {&viscous->decay[at],
+                    &viscous->gain[at],
+                    {&viscous->taken[0][at], &viscous->taken[1][at], &viscous->taken[2][at]}});
+  } else {
+    kernels_.kick(particles, kick);
+  }
+  for (const double duration : drifts) {
+    if (duration == 0) continue;
+    kernels_.drift(particles, duration);
+    particles.positions = particles.moved;
+  }
+  return taken;
+}
+
+const Motion::Viscous& Motion::viscousFor(double duration) {
+  for (const Viscous& known : viscous_) {
+    if (known.duration == duration) return known;
+  }
+  Viscous made{duration, {}, {}, {}};
+  const std::size_t count = inverse_masses_.size();
+  made.decay.assign(count, 1);
+  made.gain.assign(count, 0);
+  for (auto& taken : made.taken) taken.assign(count, 0);
+  for (const Patch& patch : layout_->patches()) {
+    for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+      const std::uint32_t particle = layout_->order()[patch.first_place + i];
+      const auto flow = system_->damping().viscousFlow(particle, duration);
+      const std::uint32_t slot = patch.first_slot + i;
+      made.decay[slot] = flow.decay;
+      made.gain[slot] = flow.gain;
+      for (int k = 0; k < 3; ++k) made.taken[k][slot] = flow.taken[k];
+    }
+  }
+  viscous_.push_back(std::move(made));
+  return viscous_.back();
+}
+
+/// The present positions of the particles of other patches.
+void Motion::welcomeGuests(const Patch& patch) {
+  const std::uint32_t* const home = layout_->guests().data() + patch.first_guest;
+  const std::uint32_t first = patch.first_row + patch.slotCount();
+  const std::uint32_t count = patch.row_count - patch.slotCount();
+  for (std::uint32_t i = 0; i < count; ++i) positions_[first + i] = positions_[home[i]];
+}
+
+void Motion::addForces(const Patch& patch, Scratch& scratch) const {
+  const double* const positions = positions_[patch.first_row].values;
+  double* const forces = scratch.forces[0].values;
+  const auto add = [&](ForceKernel kernel, const ElementArrays& arrays, Patch::Range range,
+                       bool triangles) {
+    if (range.begin == range.end) return;
+    const Elements elements = arrays.range(range.begin, range.end);
+    const std::uint32_t hard = kernel(elements, positions, forces, scratch.hard.data());
+    if (hard > 0) addHard(patch, elements, triangles, hard, scratch);
+  };
+  for (int i = 0; i < 3; ++i) {
+    add(kernels_.triangles[i], layout_->triangles(i), patch.triangles[i], true);
+  }
+  add(kernels_.arcs, layout_->arcs(), patch.arcs, false);
+  for (std::uint32_t i = patch.oriented.begin; i < patch.oriented.end; ++i) {
+    const OrientedArc& arc = layout_->orientedArcs()[i];
+    addExactly(patch, system_->springs<OrientedAngleSpring>()[arc.spring], arc.rows, scratch);
+  }
+}
+
+void Motion::addHard(const Patch& patch, const Elements& elements, bool triangles,
+                     std::uint32_t hard_count, Scratch& scratch) const {
+  const auto arc = [&](int constants, std::uint32_t e, std::uint32_t a, std::uint32_t b) {
+    AngleSpring spring;
+    spring.rest_angle = elements.springs[constants].rest[e];
+    spring.stiffness = elements.springs[constants].stiffness[e];
+    addExactly(patch, spring, {a, b}, scratch);
+  };
+  for (std::uint32_t h = 0; h < hard_count; ++h) {
+    const std::uint32_t e = scratch.hard[h];
+    const auto row = [&](int end) {
+      return static_cast<std::uint32_t>(elements.ends[end][e] / kRowLength);
+    };
+    if (!triangles) {
+      arc(0, e, row(0), row(1));
+      continue;
+    }
+    SolidAngleSpring spring;
+    spring.rest_solid_angle = elements.springs[0].rest[e];
+    spring.stiffness = elements.springs[0].stiffness[e];
+    addExactly(patch, spring, {row(0), row(1), row(2)}, scratch);
+    if (elements.springs[1].rest != nullptr) arc(1, e, row(0), row(1));
+    if (elements.springs[2].rest != nullptr) arc(2, e, row(1), row(2));
+  }
+}
+
+template <class Spring>
+void Motion::addExactly(const Patch& patch, const Spring& spring,
+                        const std::array<std::uint32_t, Spring::kParticles>& rows,
+                        Scratch& scratch) const {
+  std::array<Vector3, Spring::kParticles> points;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    points[i] = Eigen::Map<const Vector3>(positions_[patch.first_row + rows[i]].values);
+  }
+  const auto c = condition(spring, points);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Vector3 torque = -spring.stiffness * c.value * c.gradient[i];
+    Eigen::Map<Vector3>(scratch.forces[rows[i]].values) += torque.cross(points[i]);
+  }
+}
+
+std::size_t Motion::bytes() const {
+  return 2 * positions_.size() * sizeof(Row) +
+         (3 + 1 + 5 * viscous_.size()) * inverse_masses_.size() * sizeof(double);
+}
+
+}  // namespace spherical_springs::core

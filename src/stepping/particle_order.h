@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "spherical_springs/sphere.h"
+
+namespace spherical_springs::core {
+
+/// The particles along a space-filling curve, so that neighbours on the sphere are mostly
+/// neighbours in the order: their indices. It depends on the indices only where particles coincide.
+std::vector<std::uint32_t> particleOrder(const Points& positions);
+
+}  // namespace spherical_springs::core
