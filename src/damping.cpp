@@ -35,8 +35,8 @@ double meanSquareRise(double x) {
 
 }  // namespace
 
-// With rate r = c / m the velocity is w exp(-r t) + torque / m s(t), s(t) = (1 - exp(-r t)) / r, and
-// c times the integral of its square is taken.
+// With rate r = c / m the velocity is w exp(-r t) + torque / m s(t), s(t) = (1 - exp(-r t)) / r,
+// and c times the integral of its square is taken.
 Damping::ViscousFlow Damping::viscousFlow(Eigen::Index particle, double duration) const {
   const double c = viscous_[particle];
   const double mobility = inverse_masses_[particle];

@@ -3,10 +3,11 @@
 namespace spherical_springs::core {
 
 BlockedSplitting::BlockedSplitting(const std::shared_ptr<const System>& system,
-                                   const SplittingScheme& scheme, double time_step)
+                                   const SplittingScheme& scheme, double time_step,
+                                   const StepKernels& kernels)
     : scheme_(schemeUnderDamping(scheme, system->damping(), {}, time_step)),
       time_step_(time_step),
-      motion_(system, system->layout(), stepKernels()) {}
+      motion_(system, system->layout(), kernels) {}
 
 void BlockedSplitting::take(const State& state) {
   motion_.take(state);

@@ -12,7 +12,7 @@ namespace spherical_springs::core {
 class BlockedSplitting : public Integrator {
  public:
   BlockedSplitting(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
-                   double time_step);
+                   double time_step, const StepKernels& kernels = stepKernels());
   void take(const State& state) override;
   void advance(std::uint64_t steps) override;
   void give(State& state) const override;

@@ -30,8 +30,7 @@ const SplittingScheme& splittingScheme(IntegrationMethod method) {
 // Above second order some kicks go back in time, and damping with them: where it decays within a
 // step that would amplify it without bound. A verlet step is stable there.
 const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, const Damping& damping,
-                                          const std::vector<Vector3>& gradients,
-                                          double time_step) {
+                                          const std::vector<Vector3>& gradients, double time_step) {
   if (scheme.order <= 2 || damping.none()) return scheme;
   const bool resolved = damping.fastestRate(gradients) * time_step <= 1;
   return resolved ? scheme : splittingScheme(IntegrationMethod::verlet);

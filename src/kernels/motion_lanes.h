@@ -56,15 +56,19 @@ struct LaneTurn {
   Lanes cosine, sinc;
 };
 
-/// As `turnBy` in src/sphere.cpp.
+/// As `turnBy` in src/sphere.cpp, with fewer terms where all angles are below 0.03.
 inline LaneTurn turnBy(const Lanes& squared_angle) {
-  constexpr double kSmall = 0.25;
-  constexpr double kCosine[] = {1,           -1. / 2,       1. / 24,        -1. / 720,
-                                1. / 40320,  -1. / 3628800, 1. / 479001600, -1. / 87178291200};
+  constexpr double kSmall = 0.25, kTiny = 1e-3;
+  constexpr double kCosine[] = {1,          -1. / 2,       1. / 24,        -1. / 720,
+                                1. / 40320, -1. / 3628800, 1. / 479001600, -1. / 87178291200};
   constexpr double kSinc[] = {1,           -1. / 6,        1. / 120,        -1. / 5040,
                               1. / 362880, -1. / 39916800, 1. / 6227020800, -1. / 1307674368000};
+  constexpr double kTinyCosine[] = {kCosine[0], kCosine[1], kCosine[2], kCosine[3], kCosine[4]};
+  constexpr double kTinySinc[] = {kSinc[0], kSinc[1], kSinc[2], kSinc[3]};
+  if (!any(squared_angle > kTiny)) {
+    return {polynomial(kTinyCosine, squared_angle), polynomial(kTinySinc, squared_angle)};
+  }
   LaneTurn turn = {polynomial(kCosine, squared_angle), polynomial(kSinc, squared_angle)};
-  if (!any(squared_angle > kSmall)) return turn;
   for (int k = 0; k < kLanes; ++k) {
     if (!(squared_angle[k] > kSmall)) continue;
     const double angle = ::sqrt(squared_angle[k]);
@@ -82,11 +86,10 @@ void drift(const Particles& particles, double duration) {
     const Lanes squared_angle = dot(rotation, rotation);
     const LaneTurn turn = turnBy(squared_angle);
     Lanes3 moved = turn.cosine * position + turn.sinc * cross(rotation, position);
-    moved = (1.5 - 0.5 * dot(moved, moved)) * moved;
-    moved = select(squared_angle == 0, position, moved);
-    storeRows(moved, particles.moved + kRowLength * first);
-    // Rounding alone has put a part along the position.
+    // Rounding alone has put a part along the position, and the length off 1.
     storeVelocities(velocity - dot(moved, velocity) * moved, particles, first);
+    moved = (1.5 - 0.5 * dot(moved, moved)) * moved;
+    storeRows(select(squared_angle == 0, position, moved), particles.moved + kRowLength * first);
   }
 }
 
@@ -97,8 +100,7 @@ namespace spherical_springs::core {
 /// This file's own.
 static constexpr StepKernels kKernels = {
     addAll<ShortArcs, addAnyArcs>,
-    {addAll<ShortTriangles<0>, addAnyTriangles<0>>,
-     addAll<ShortTriangles<1>, addAnyTriangles<1>>,
+    {addAll<ShortTriangles<0>, addAnyTriangles<0>>, addAll<ShortTriangles<1>, addAnyTriangles<1>>,
      addAll<ShortTriangles<2>, addAnyTriangles<2>>},
     kick,
     viscousKick,

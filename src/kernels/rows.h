@@ -48,9 +48,8 @@ template <class Use>
 }
 
 [[gnu::always_inline]] inline void storeRows(const Lanes3& v, double* rows) {
-  forEachRow(v, [&](int k, const Four& row) {
-    std::memcpy(rows + kRowLength * k, &row, sizeof row);
-  });
+  forEachRow(v,
+             [&](int k, const Four& row) { std::memcpy(rows + kRowLength * k, &row, sizeof row); });
 }
 
 }  // namespace

@@ -10,6 +10,10 @@ namespace spherical_springs::core {
 constexpr std::size_t kGroup = 8;
 constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
 
+struct alignas(kRowLength * sizeof(double)) Row {
+  double values[kRowLength];
+};
+
 /// A field of each element of a list.
 struct SpringConstants {
   const double* rest;
@@ -29,22 +33,22 @@ struct Elements {
 /// with a pair of corners nearly antipodal.
 /// @return how many are hard.
 using ForceKernel = std::uint32_t (*)(const Elements& elements, const double* positions,
-                                       double* forces, std::uint32_t* hard);
+                                      double* forces, std::uint32_t* hard);
 
 /// Particles side by side, a multiple of kGroup.
 struct Particles {
-  const double* positions;        ///< rows
-  double* moved;                  ///< rows; may be those of `positions`
-  double* velocities[3];          ///< of each component, an array
-  const double* forces;          ///< rows
+  const double* positions;  ///< rows
+  double* moved;            ///< rows; may be those of `positions`
+  double* velocities[3];    ///< of each component, an array
+  const double* forces;     ///< rows
   const double* inverse_masses;
   std::uint32_t count;
 };
 
 /// What a kick over some time does to a particle with viscous damping: arrays over particles.
 struct ViscousKick {
-  const double* decay;  ///< factor of the velocity
-  const double* gain;   ///< velocity a torque
+  const double* decay;     ///< factor of the velocity
+  const double* gain;      ///< velocity a torque
   const double* taken[3];  ///< energy a velocity squared, a velocity times torque, a torque squared
 };
 

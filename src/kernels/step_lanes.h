@@ -19,17 +19,23 @@ constexpr double kPi = 3.14159265358979323846;
   return result;
 }
 
-[[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) { return mask ? a : b; }
+[[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) {
+  return mask ? a : b;
+}
 [[gnu::always_inline]] inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 [[gnu::always_inline]] inline Lanes absolute(const Lanes& x) { return select(x < 0, -x, x); }
-[[gnu::always_inline]] inline Lanes select0(const LaneMask& mask, const Lanes& a) { return mask ? a : Lanes{}; }
-[[gnu::always_inline]] inline Lanes3 select(const LaneMask& mask, const Lanes3& a, const Lanes3& b) {
+[[gnu::always_inline]] inline Lanes select0(const LaneMask& mask, const Lanes& a) {
+  return mask ? a : Lanes{};
+}
+[[gnu::always_inline]] inline Lanes3 select(const LaneMask& mask, const Lanes3& a,
+                                            const Lanes3& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
 /// Horner's scheme for even and odd powers apart, which halves the wait.
 template <std::size_t N>
-[[gnu::always_inline]] inline Lanes polynomialByParity(const double (&coefficients)[N], const Lanes& x) {
+[[gnu::always_inline]] inline Lanes polynomialByParity(const double (&coefficients)[N],
+                                                       const Lanes& x) {
   constexpr std::size_t kLastEven = (N - 1) & ~std::size_t(1), kLastOdd = (N - 2) | 1;
   const Lanes square = x * x;
   Lanes even = coefficients[kLastEven] - Lanes{}, odd = coefficients[kLastOdd] - Lanes{};
@@ -57,11 +63,11 @@ template <std::size_t N>
   return polynomial(kCoefficients, square);
 }
 
-constexpr double kShortest = 1e-16;     // of a quarter of a squared chord, and of its supplement
-constexpr double kAntipodal = 0.25;     // of the squared norm of a triangle
-constexpr double kShort = 1. / 16;      // of a squared chord, for the short way
-constexpr double kSmallest = 1e-12;     // of the sum of a triangle's squared edges, likewise
-constexpr double kSmall = 1.5 * kShort; // so that no edge is longer than short
+constexpr double kShortest = 1e-16;      // of a quarter of a squared chord, and of its supplement
+constexpr double kAntipodal = 0.25;      // of the squared norm of a triangle
+constexpr double kShort = 1. / 16;       // of a squared chord, for the short way
+constexpr double kSmallest = 1e-12;      // of the sum of a triangle's squared edges, likewise
+constexpr double kSmall = 1.5 * kShort;  // so that no edge is longer than short
 
 /// Constants of the springs of a batch.
 struct LaneConstants {
@@ -77,8 +83,8 @@ struct LaneConstants {
   return squareRoot(squared_chord * (1 - 0.25 * squared_chord));
 }
 
-[[gnu::always_inline]] inline Lanes shortPull(const LaneConstants& spring, const Lanes& squared_chord,
-                       const Lanes& over_sine) {
+[[gnu::always_inline]] inline Lanes shortPull(const LaneConstants& spring,
+                                              const Lanes& squared_chord, const Lanes& over_sine) {
   return spring.stiffness * (overSineRatio(0.25 * squared_chord) - spring.rest * over_sine);
 }
 
@@ -171,8 +177,8 @@ inline void put(const Lanes3& v, Lanes3& to) {
 /// Triangles by the batch: first what they are, then how their edges pull, then the forces, so that
 /// the processor has always enough to do that does not wait for anything.
 ///
-/// With all three vertices on the unit sphere the solid angle is a function of the squared edges, so
-/// its forces are along the edges, as those of arcs are. Its derivative by one of them has the
+/// With all three vertices on the unit sphere the solid angle is a function of the squared edges,
+/// so its forces are along the edges, as those of arcs are. Its derivative by one of them has the
 /// triple product below the line: slivers are left to `addAnyTriangles`.
 template <int kArcs>
 class ShortTriangles {
@@ -212,8 +218,8 @@ class ShortTriangles {
     constexpr double kThinnest = 1. / 24;  // twice the area by the sum of the squared edges
     constexpr double kLargestRest = 5;     // no area below 1 is half of 4 pi away from it
     const Lanes sum = e.squared_ab + e.squared_bc + e.squared_ca;
-    return (sum > kSmall) | (sum < kSmallest) |
-           (absolute(e.triple_product) < kThinnest * sum) | (absolute(rest) > kLargestRest);
+    return (sum > kSmall) | (sum < kSmallest) | (absolute(e.triple_product) < kThinnest * sum) |
+           (absolute(rest) > kLargestRest);
   }
 
   // One division for all.
@@ -301,8 +307,7 @@ LaneMask addAnyTriangles(const Elements& elements, std::uint32_t first, const do
   const Lanes3 a = gatherRows(positions, rows[0]), b = gatherRows(positions, rows[1]),
                c = gatherRows(positions, rows[2]);
   const TriangleEdges e(a, b, c);
-  const AnyTriangle t =
-      anyTriangle(e.triple_product, e.denominator, {elements.springs[0], first});
+  const AnyTriangle t = anyTriangle(e.triple_product, e.denominator, {elements.springs[0], first});
   LaneMask hard = t.hard;
   AnyArc first_arc = {}, second_arc = {};
   if (kArcs > 0) first_arc = anyArc(a, b, {elements.springs[1], first});

@@ -131,8 +131,7 @@ Element joined(Element triangle, Sides sides) {
 ElementLists elementsOf(const System& system, const Places& places) {
   ElementLists lists;
   lists.arcs = sortedSprings(system.springs<AngleSpring>(), places);
-  const auto triangles =
-      sortedSprings(system.springs<SolidAngleSpring>(), places);
+  const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places);
   if (triangles.empty()) return lists;
   std::vector<Sides> sides(triangles.size());
   lists.arcs = giveAway(lists.arcs, triangles, places.size(), sides);

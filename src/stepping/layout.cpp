@@ -123,9 +123,8 @@ class Layout::Builder {
     const std::array<Shares, 3> triangles = {share(lists.triangles[0]), share(lists.triangles[1]),
                                              share(lists.triangles[2])};
     const auto oriented = orientedArcs();
-    const Shares oriented_shares =
-        cut_.share(static_cast<std::uint32_t>(oriented.size()),
-                   [&](std::uint32_t e) { return oriented[e].rows; });
+    const Shares oriented_shares = cut_.share(static_cast<std::uint32_t>(oriented.size()),
+                                              [&](std::uint32_t e) { return oriented[e].rows; });
     for (std::size_t b = 0; b < cut_.patchCount(); ++b) {
       Patch patch = beginPatch(b);
       patch.arcs = fill(lists.arcs, arcs, b, layout_.arcs_);

@@ -32,9 +32,6 @@ class Motion {
   std::size_t bytes() const;
 
  private:
-  struct alignas(kRowLength * sizeof(double)) Row {
-    double values[kRowLength];
-  };
   struct Scratch {
     std::vector<Row> forces;
     std::vector<std::uint32_t> hard;
@@ -67,8 +64,8 @@ class Motion {
   std::vector<Row> positions_, moved_;
   std::array<std::vector<double>, 3> velocities_;
   std::vector<double> inverse_masses_;
-  std::vector<Viscous> viscous_;   // one a duration; only in a scene with damped particles
-  std::vector<double> dissipated_; // likewise, one a patch
+  std::vector<Viscous> viscous_;    // one a duration; only in a scene with damped particles
+  std::vector<double> dissipated_;  // likewise, one a patch
 };
 
 }  // namespace spherical_springs::core
