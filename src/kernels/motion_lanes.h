@@ -99,9 +99,8 @@ namespace spherical_springs::core {
 
 /// This file's own.
 static constexpr StepKernels kKernels = {
-    addAll<ShortArcs, addAnyArcs>,
-    {addAll<ShortTriangles<0>, addAnyTriangles<0>>, addAll<ShortTriangles<1>, addAnyTriangles<1>>,
-     addAll<ShortTriangles<2>, addAnyTriangles<2>>},
+    {addAll<ShortArcs>, addAll<ShortTriangles<0>>, addAll<ShortTriangles<1>>,
+     addAll<ShortTriangles<2>>},
     kick,
     viscousKick,
     drift};

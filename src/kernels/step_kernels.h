@@ -3,37 +3,39 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 namespace spherical_springs::core {
 
-/// Elements come in groups of so many, the last filled up with elements of no stiffness.
-constexpr std::size_t kGroup = 8;
+constexpr std::size_t kGroup = 8;      ///< so many springs or particles lie side by side
 constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
 
 struct alignas(kRowLength * sizeof(double)) Row {
   double values[kRowLength];
 };
 
-/// A field of each element of a list.
-struct SpringConstants {
-  const double* rest;
-  const double* stiffness;
+/// Elements that a kernel takes together: arcs, or triangles with the arcs along their first edges.
+/// The last group of a list is filled up with elements of no stiffness.
+template <int kEnds, int kSprings>
+struct alignas(Row) ElementGroup {
+  struct Springs {
+    double rest[kGroup], stiffness[kGroup];
+  };
+  std::uint32_t ends[kEnds][kGroup];  ///< where rows of particles begin [doubles]
+  Springs springs[kSprings];          ///< the arc; or the triangle, then its arcs
 };
 
-/// A list of elements: arcs; or triangles with up to two of their edges as arcs, first to second
-/// and second to third corner.
-struct Elements {
-  const std::uint32_t* ends[3];  ///< where rows of particles begin [doubles]
-  SpringConstants springs[3];    ///< the arc; or the triangle and its arcs
-  std::uint32_t count;           ///< a multiple of kGroup
-};
+using Arcs = ElementGroup<2, 1>;
+template <int kArcs>
+using Triangles = ElementGroup<3, 1 + kArcs>;
 
-/// Adds the forces of `elements` to rows of `forces`, for particles at rows of `positions`, but
-/// for the elements that are hard, whose indices it puts into `hard`: arcs near 0 or pi, triangles
-/// with a pair of corners nearly antipodal.
+/// Adds the forces of elements to rows of `forces`, for particles at rows of `positions`; what of a
+/// force is along the position means nothing. Nothing is added for the elements that are hard,
+/// whose indices are put into `hard`: arcs near 0 or pi, triangles with nearly antipodal corners.
 /// @return how many are hard.
-using ForceKernel = std::uint32_t (*)(const Elements& elements, const double* positions,
-                                      double* forces, std::uint32_t* hard);
+template <class Group>
+using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
+                                      const double* positions, double* forces, std::uint32_t* hard);
 
 /// Particles side by side, a multiple of kGroup.
 struct Particles {
@@ -45,11 +47,12 @@ struct Particles {
   std::uint32_t count;
 };
 
-/// What a kick over some time does to a particle with viscous damping: arrays over particles.
+/// What a kick over some time does to particles with viscous damping, as Damping::ViscousFlow has
+/// it: arrays over particles.
 struct ViscousKick {
-  const double* decay;     ///< factor of the velocity
-  const double* gain;      ///< velocity a torque
-  const double* taken[3];  ///< energy a velocity squared, a velocity times torque, a torque squared
+  const double* decay;
+  const double* gain;
+  const double* taken[3];
 };
 
 /// Velocities under the forces for `duration` [s].
@@ -62,8 +65,9 @@ using ViscousKickKernel = double (*)(const Particles& particles, const ViscousKi
 using DriftKernel = void (*)(const Particles& particles, double duration);
 
 struct StepKernels {
-  ForceKernel arcs;
-  ForceKernel triangles[3];  ///< with so many arcs
+  std::tuple<ForceKernel<Arcs>, ForceKernel<Triangles<0>>, ForceKernel<Triangles<1>>,
+             ForceKernel<Triangles<2>>>
+      forces;
   KickKernel kick;
   ViscousKickKernel viscous_kick;
   DriftKernel drift;

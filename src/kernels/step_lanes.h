@@ -8,8 +8,10 @@
 
 namespace {
 
-using spherical_springs::core::Elements;
-using spherical_springs::core::SpringConstants;
+using spherical_springs::core::Arcs;
+using spherical_springs::core::ElementGroup;
+using spherical_springs::core::kGroup;
+using spherical_springs::core::Triangles;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -69,12 +71,28 @@ constexpr double kShort = 1. / 16;       // of a squared chord, for the short wa
 constexpr double kSmallest = 1e-12;      // of the sum of a triangle's squared edges, likewise
 constexpr double kSmall = 1.5 * kShort;  // so that no edge is longer than short
 
+/// Some elements of a group, one in each lane.
+template <class Group>
+struct Batch {
+  const Group* group;
+  std::size_t first;  ///< in the group
+
+  [[gnu::always_inline]] const std::uint32_t* rows(int end) const {
+    return group->ends[end] + first;
+  }
+  [[gnu::always_inline]] Lanes3 gather(int end, const double* positions) const {
+    return gatherRows(positions, rows(end));
+  }
+};
+
 /// Constants of the springs of a batch.
 struct LaneConstants {
   Lanes rest, stiffness;
 
-  LaneConstants(const SpringConstants& springs, std::uint32_t first)
-      : rest(load(springs.rest + first)), stiffness(load(springs.stiffness + first)) {}
+  template <class Group>
+  [[gnu::always_inline]] LaneConstants(const Batch<Group>& batch, int spring)
+      : rest(load(batch.group->springs[spring].rest + batch.first)),
+        stiffness(load(batch.group->springs[spring].stiffness + batch.first)) {}
 };
 
 // --- arcs and triangles of less than half a radian or so ---
@@ -183,15 +201,16 @@ inline void put(const Lanes3& v, Lanes3& to) {
 template <int kArcs>
 class ShortTriangles {
  public:
-  ShortTriangles(const Elements& elements, const double* positions, double* forces)
-      : elements_(elements), positions_(positions), forces_(forces) {}
+  using Group = Triangles<kArcs>;
+
+  ShortTriangles(const double* positions, double* forces)
+      : positions_(positions), forces_(forces) {}
 
   /// False where a triangle or arc is not short, or a triangle a sliver.
-  [[gnu::always_inline]] bool add(std::uint32_t first) {
-    const TriangleEdges e(gatherRows(positions_, elements_.ends[0] + first),
-                          gatherRows(positions_, elements_.ends[1] + first),
-                          gatherRows(positions_, elements_.ends[2] + first));
-    first_[count_] = first;
+  [[gnu::always_inline]] bool add(const Batch<Group>& batch) {
+    const TriangleEdges e(batch.gather(0, positions_), batch.gather(1, positions_),
+                          batch.gather(2, positions_));
+    batches_[count_] = batch;
     put(e.ab, ab_[count_]);
     put(e.bc, bc_[count_]);
     put(e.ca, ca_[count_]);
@@ -199,7 +218,7 @@ class ShortTriangles {
     squared_bc_[count_] = e.squared_bc;
     squared_ca_[count_] = e.squared_ca;
     triple_product_[count_] = e.triple_product;
-    if (any(isOther(e, load(elements_.springs[0].rest + first)))) return false;
+    if (any(isOther(e, LaneConstants(batch, 0).rest))) return false;
     if (++count_ == kMost) flush();
     return true;
   }
@@ -248,8 +267,8 @@ class ShortTriangles {
   // d(solid angle) = 2 (beta d alpha - alpha d beta) / (alpha^2 + beta^2), beta = 4 - half the sum
   // of the squared edges, and alpha^2 is Gram's determinant.
   [[gnu::always_inline]] void computePulls(int i) {
-    const std::uint32_t first = first_[i];
-    const LaneConstants spring(elements_.springs[0], first);
+    const Batch<Group>& batch = batches_[i];
+    const LaneConstants spring(batch, 0);
     const Lanes ab = squared_ab_[i], bc = squared_bc_[i], ca = squared_ca_[i];
     const Lanes alpha = triple_product_[i], over_q = over_q_[i];
     const Lanes half_sum = 0.5 * (ab + bc + ca);
@@ -261,8 +280,8 @@ class ShortTriangles {
     const Lanes across = pull * beta_beta;  // 2 stiffness C beta / (alpha (alpha^2 + beta^2))
     const Lanes along = pull * (alpha_alpha * beta);
     Lanes along_ab = along, along_bc = along;
-    if (kArcs > 0) along_ab += shortPull({elements_.springs[1], first}, ab, over_sine_ab_[i]);
-    if (kArcs > 1) along_bc += shortPull({elements_.springs[2], first}, bc, over_sine_bc_[i]);
+    if (kArcs > 0) along_ab += shortPull(LaneConstants(batch, 1), ab, over_sine_ab_[i]);
+    if (kArcs > 1) along_bc += shortPull(LaneConstants(batch, 2), bc, over_sine_bc_[i]);
     const Lanes quarter_ab = 0.25 * ab, quarter_bc = 0.25 * bc;
     pull_ab_[i] = across * (half_sum - ab - quarter_bc * ca) + along_ab;
     pull_bc_[i] = across * (half_sum - bc - quarter_ab * ca) + along_bc;
@@ -270,18 +289,16 @@ class ShortTriangles {
   }
 
   [[gnu::always_inline]] void addForces(int i) {
-    const std::uint32_t first = first_[i];
     const Lanes3 ab = pull_ab_[i] * ab_[i], bc = pull_bc_[i] * bc_[i], ca = pull_ca_[i] * ca_[i];
-    addRows(ab - ca, forces_, elements_.ends[0] + first);
-    addRows(bc - ab, forces_, elements_.ends[1] + first);
-    addRows(ca - bc, forces_, elements_.ends[2] + first);
+    addRows(ab - ca, forces_, batches_[i].rows(0));
+    addRows(bc - ab, forces_, batches_[i].rows(1));
+    addRows(ca - bc, forces_, batches_[i].rows(2));
   }
 
-  const Elements elements_;
   const double* const positions_;
   double* const forces_;
   int count_ = 0;
-  std::uint32_t first_[kMost];
+  Batch<Group> batches_[kMost];
   Lanes3 ab_[kMost], bc_[kMost], ca_[kMost];
   Lanes squared_ab_[kMost], squared_bc_[kMost], squared_ca_[kMost], triple_product_[kMost];
   Lanes over_q_[kMost], over_sine_ab_[kMost], over_sine_bc_[kMost];
@@ -300,40 +317,44 @@ inline void addArc(const AnyArc& arc, const LaneMask& hard, double* forces,
 // At a the gradient is beta (b x c) - alpha (b + c), but for what is along a; and b x c is
 // a x (c - b) + area.
 template <int kArcs>
-LaneMask addAnyTriangles(const Elements& elements, std::uint32_t first, const double* positions,
+LaneMask addAnyTriangles(const Batch<Triangles<kArcs>>& batch, const double* positions,
                          double* forces) {
-  const std::uint32_t* const rows[3] = {elements.ends[0] + first, elements.ends[1] + first,
-                                        elements.ends[2] + first};
-  const Lanes3 a = gatherRows(positions, rows[0]), b = gatherRows(positions, rows[1]),
-               c = gatherRows(positions, rows[2]);
+  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
+               c = batch.gather(2, positions);
   const TriangleEdges e(a, b, c);
-  const AnyTriangle t = anyTriangle(e.triple_product, e.denominator, {elements.springs[0], first});
+  const AnyTriangle t = anyTriangle(e.triple_product, e.denominator, LaneConstants(batch, 0));
   LaneMask hard = t.hard;
   AnyArc first_arc = {}, second_arc = {};
-  if (kArcs > 0) first_arc = anyArc(a, b, {elements.springs[1], first});
-  if (kArcs > 1) second_arc = anyArc(b, c, {elements.springs[2], first});
+  if (kArcs > 0) first_arc = anyArc(a, b, LaneConstants(batch, 1));
+  if (kArcs > 1) second_arc = anyArc(b, c, LaneConstants(batch, 2));
   hard |= first_arc.hard | second_arc.hard;
-  if (kArcs > 0) addArc(first_arc, hard, forces, rows[0], rows[1]);
-  if (kArcs > 1) addArc(second_arc, hard, forces, rows[1], rows[2]);
+  if (kArcs > 0) addArc(first_arc, hard, forces, batch.rows(0), batch.rows(1));
+  if (kArcs > 1) addArc(second_arc, hard, forces, batch.rows(1), batch.rows(2));
   const Lanes alpha = select0(~hard, t.alpha), beta = select0(~hard, t.beta);
   const Lanes3 area = beta * e.area;
-  addRows(alpha * (e.ab - e.ca) - beta * cross(a, e.bc) - area, forces, rows[0]);
-  addRows(alpha * (e.bc - e.ab) - beta * cross(b, e.ca) - area, forces, rows[1]);
-  addRows(alpha * (e.ca - e.bc) - beta * cross(c, e.ab) - area, forces, rows[2]);
+  addRows(alpha * (e.ab - e.ca) - beta * cross(a, e.bc) - area, forces, batch.rows(0));
+  addRows(alpha * (e.bc - e.ab) - beta * cross(b, e.ca) - area, forces, batch.rows(1));
+  addRows(alpha * (e.ca - e.bc) - beta * cross(c, e.ab) - area, forces, batch.rows(2));
   return hard;
+}
+
+template <int kSprings>
+LaneMask addAny(const Batch<ElementGroup<3, kSprings>>& batch, const double* positions,
+                double* forces) {
+  return addAnyTriangles<kSprings - 1>(batch, positions, forces);
 }
 
 /// The same for arcs alone.
 class ShortArcs {
  public:
-  ShortArcs(const Elements& elements, const double* positions, double* forces)
-      : elements_(elements), positions_(positions), forces_(forces) {}
+  using Group = Arcs;
 
-  [[gnu::always_inline]] bool add(std::uint32_t first) {
-    const Lanes3 chord = gatherRows(positions_, elements_.ends[1] + first) -
-                         gatherRows(positions_, elements_.ends[0] + first);
+  ShortArcs(const double* positions, double* forces) : positions_(positions), forces_(forces) {}
+
+  [[gnu::always_inline]] bool add(const Batch<Arcs>& batch) {
+    const Lanes3 chord = batch.gather(1, positions_) - batch.gather(0, positions_);
     const Lanes squared = dot(chord, chord);
-    first_[count_] = first;
+    batches_[count_] = batch;
     put(chord, chord_[count_]);
     squared_[count_] = squared;
     if (any((squared < 4 * kShortest) | (squared > kShort))) return false;
@@ -343,12 +364,12 @@ class ShortArcs {
 
   void flush() {
     for (int i = 0; i < count_; ++i) {
-      pull_[i] = shortPull({elements_.springs[0], first_[i]}, squared_[i], 1 / sineOf(squared_[i]));
+      pull_[i] = shortPull(LaneConstants(batches_[i], 0), squared_[i], 1 / sineOf(squared_[i]));
     }
     for (int i = 0; i < count_; ++i) {
       const Lanes3 force = pull_[i] * chord_[i];
-      addRows(force, forces_, elements_.ends[0] + first_[i]);
-      addRows(negative(force), forces_, elements_.ends[1] + first_[i]);
+      addRows(force, forces_, batches_[i].rows(0));
+      addRows(negative(force), forces_, batches_[i].rows(1));
     }
     count_ = 0;
   }
@@ -356,40 +377,48 @@ class ShortArcs {
  private:
   static constexpr int kMost = 8;
 
-  const Elements elements_;
   const double* const positions_;
   double* const forces_;
   int count_ = 0;
-  std::uint32_t first_[kMost];
+  Batch<Arcs> batches_[kMost];
   Lanes3 chord_[kMost];
   Lanes squared_[kMost], pull_[kMost];
 };
 
-LaneMask addAnyArcs(const Elements& elements, std::uint32_t first, const double* positions,
-                    double* forces) {
-  const std::uint32_t* const a = elements.ends[0] + first;
-  const std::uint32_t* const b = elements.ends[1] + first;
+LaneMask addAny(const Batch<Arcs>& batch, const double* positions, double* forces) {
   const AnyArc arc =
-      anyArc(gatherRows(positions, a), gatherRows(positions, b), {elements.springs[0], first});
-  addArc(arc, arc.hard, forces, a, b);
+      anyArc(batch.gather(0, positions), batch.gather(1, positions), LaneConstants(batch, 0));
+  addArc(arc, arc.hard, forces, batch.rows(0), batch.rows(1));
   return arc.hard;
 }
 
-using AddAny = LaneMask (*)(const Elements&, std::uint32_t, const double*, double*);
+/// Brings a group nearer, if there is one; what is beyond the last does no harm.
+template <class Group>
+[[gnu::always_inline]] inline void fetch(const Group* group) {
+  constexpr std::size_t kLine = 64;
+  for (std::size_t at = 0; at < sizeof(Group); at += kLine) {
+    __builtin_prefetch(reinterpret_cast<const char*>(group) + at);
+  }
+}
 
-template <class Short, AddAny kAddAny>
-std::uint32_t addAll(const Elements& elements, const double* positions, double* forces,
-                     std::uint32_t* hard) {
-  Short batches(elements, positions, forces);
+template <class Short>
+std::uint32_t addAll(const typename Short::Group* groups, std::uint32_t group_count,
+                     const double* positions, double* forces, std::uint32_t* hard) {
+  constexpr std::uint32_t kAhead = 16;
+  Short short_ones(positions, forces);
   std::uint32_t hard_count = 0;
-  for (std::uint32_t first = 0; first < elements.count; first += kLanes) {
-    if (batches.add(first)) continue;
-    const LaneMask mask = kAddAny(elements, first, positions, forces);
-    for (int k = 0; k < kLanes; ++k) {
-      if (mask[k] != 0) hard[hard_count++] = first + k;
+  for (std::uint32_t g = 0; g < group_count; ++g) {
+    fetch(groups + g + kAhead);
+    for (std::uint32_t first = 0; first < kGroup; first += kLanes) {
+      const Batch<typename Short::Group> batch = {groups + g, first};
+      if (short_ones.add(batch)) continue;
+      const LaneMask mask = addAny(batch, positions, forces);
+      for (int k = 0; k < kLanes; ++k) {
+        if (mask[k] != 0) hard[hard_count++] = g * kGroup + first + k;
+      }
     }
   }
-  batches.flush();
+  short_ones.flush();
   return hard_count;
 }
 

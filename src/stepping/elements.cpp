@@ -12,12 +12,10 @@ using Places = std::vector<std::uint32_t>;
 /// Elements of one spring each, turned to have the first end first, in order.
 template <class Spring>
 std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Places& places) {
-  constexpr std::uint32_t Element::*spring_of =
-      Spring::kParticles == 2 ? &Element::arc : &Element::triangle;
   std::vector<Element> elements(springs.size());
   for (std::uint32_t s = 0; s < springs.size(); ++s) {
     Element& element = elements[s];
-    element.*spring_of = s;
+    element.springs[0] = s;
     const auto begin = element.ends.begin(), end = begin + Spring::kParticles;
     for (std::size_t i = 0; i < Spring::kParticles; ++i) {
       element.ends[i] = places[springs[s].particles[i]];
@@ -25,7 +23,7 @@ std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Plac
     std::rotate(begin, std::min_element(begin, end), end);
   }
   const auto key = [&](const Element& element) {
-    const Spring& spring = springs[element.*spring_of];
+    const Spring& spring = springs[element.springs[0]];
     return std::make_tuple(spring.restValue(), spring.stiffness);
   };
   std::sort(elements.begin(), elements.end(), [&](const Element& a, const Element& b) {
@@ -105,7 +103,7 @@ std::vector<Element> giveAway(const std::vector<Element>& arcs,
       least = of.count();
     }
     if (best != nullptr) {
-      sides[best->triangle].arcs[best->side] = arc.arc;
+      sides[best->triangle].arcs[best->side] = arc.springs[0];
     } else {
       left.push_back(arc);
     }
@@ -121,8 +119,8 @@ Element joined(Element triangle, Sides sides) {
     std::rotate(triangle.ends.begin(), triangle.ends.begin() + 1, triangle.ends.end());
     std::rotate(sides.arcs.begin(), sides.arcs.begin() + 1, sides.arcs.end());
   }
-  triangle.arc = sides.arcs[0];
-  triangle.second_arc = sides.arcs[1];
+  triangle.springs[1] = sides.arcs[0];
+  triangle.springs[2] = sides.arcs[1];
   return triangle;
 }
 
@@ -130,13 +128,14 @@ Element joined(Element triangle, Sides sides) {
 
 ElementLists elementsOf(const System& system, const Places& places) {
   ElementLists lists;
-  lists.arcs = sortedSprings(system.springs<AngleSpring>(), places);
+  auto& arcs = lists[0];
+  arcs = sortedSprings(system.springs<AngleSpring>(), places);
   const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places);
   if (triangles.empty()) return lists;
   std::vector<Sides> sides(triangles.size());
-  lists.arcs = giveAway(lists.arcs, triangles, places.size(), sides);
+  arcs = giveAway(arcs, triangles, places.size(), sides);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    lists.triangles[sides[t].count()].push_back(joined(triangles[t], sides[t]));
+    lists[1 + sides[t].count()].push_back(joined(triangles[t], sides[t]));
   }
   return lists;
 }

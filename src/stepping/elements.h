@@ -11,21 +11,17 @@ namespace spherical_springs::core {
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// What a kernel computes at once: an arc, or a triangle with up to two arcs along its edges. Ends
-/// are places in the order of particles, the others are indices of springs.
+/// What a kernel computes at once: an arc, or a triangle with up to two arcs along its edges.
 struct Element {
-  std::array<std::uint32_t, 3> ends{kNone, kNone, kNone};
-  std::uint32_t triangle = kNone;
-  std::uint32_t arc = kNone;         ///< from the first end to the second
-  std::uint32_t second_arc = kNone;  ///< from the second to the third
+  std::array<std::uint32_t, 3> ends{kNone, kNone, kNone};  ///< places in the order of particles
+  /// Indices of springs: of the arc; or of the triangle, of the arc from its first end to its
+  /// second, and of that from its second to its third.
+  std::array<std::uint32_t, 3> springs{kNone, kNone, kNone};
 };
 
-/// Elements of each sort: arcs alone, and triangles with none, one and two arcs. They depend on the
-/// springs, not on the order in which the springs are listed.
-struct ElementLists {
-  std::vector<Element> arcs;
-  std::array<std::vector<Element>, 3> triangles;
-};
+/// Arcs alone, and triangles with no, one and two arcs; in an order that depends on the springs,
+/// not on how they are listed.
+using ElementLists = std::array<std::vector<Element>, 4>;
 
 /// `places`: of each particle in the order.
 ElementLists elementsOf(const System& system, const std::vector<std::uint32_t>& places);

@@ -8,40 +8,6 @@
 
 namespace spherical_springs::core {
 
-Elements ElementArrays::range(std::uint32_t begin, std::uint32_t end) const {
-  Elements elements = {};
-  for (int i = 0; i < end_count_; ++i) elements.ends[i] = ends_[i].data() + begin;
-  for (int i = 0; i < spring_count_; ++i) {
-    elements.springs[i] = {rest_[i].data() + begin, stiffness_[i].data() + begin};
-  }
-  elements.count = end - begin;
-  return elements;
-}
-
-void ElementArrays::grow(std::uint32_t count) {
-  for (int i = 0; i < end_count_; ++i) ends_[i].resize(count, 0);
-  for (int i = 0; i < spring_count_; ++i) {
-    rest_[i].resize(count, 0);
-    stiffness_[i].resize(count, 0);
-  }
-}
-
-void ElementArrays::set(std::uint32_t index, const std::array<std::uint32_t, 3>& rows,
-                        const std::array<Constants, 3>& constants) {
-  for (int i = 0; i < end_count_; ++i) {
-    ends_[i][index] = static_cast<std::uint32_t>(kRowLength * rows[i]);
-  }
-  for (int i = 0; i < spring_count_; ++i) {
-    rest_[i][index] = constants[i].rest;
-    stiffness_[i][index] = constants[i].stiffness;
-  }
-}
-
-std::size_t ElementArrays::bytes() const {
-  const std::size_t each = end_count_ * sizeof(std::uint32_t) + spring_count_ * 2 * sizeof(double);
-  return each * size();
-}
-
 namespace {
 
 /// The elements of each patch: those of patch b are at [first[b], first[b + 1]).
@@ -61,26 +27,27 @@ class Cut {
   std::size_t begin(std::size_t patch) const { return places_ * patch / patches_; }
   std::size_t patchCount() const { return patches_; }
 
-  /// `endsOf(e)`: the ends of each of `count` elements.
-  template <class EndsOf>
-  Shares share(std::uint32_t count, const EndsOf& endsOf) const {
+  /// `endsOf(element)`: its ends.
+  template <class Item, class EndsOf>
+  Shares share(const std::vector<Item>& elements, const EndsOf& endsOf) const {
     Shares shares{std::vector<std::uint32_t>(patches_ + 1, 0), {}};
-    forEachPatch(count, endsOf, [&](std::uint32_t b, std::uint32_t) { ++shares.first[b + 1]; });
-    for (std::size_t b = 0; b < patches_; ++b) shares.first[b + 1] += shares.first[b];
+    forEachShare(elements, endsOf, [&](std::uint32_t p, std::uint32_t) { ++shares.first[p + 1]; });
+    for (std::size_t p = 0; p < patches_; ++p) shares.first[p + 1] += shares.first[p];
     shares.elements.resize(shares.first.back());
     std::vector<std::uint32_t> next(shares.first.begin(), shares.first.end() - 1);
-    forEachPatch(count, endsOf,
-                 [&](std::uint32_t b, std::uint32_t e) { shares.elements[next[b]++] = e; });
+    forEachShare(elements, endsOf,
+                 [&](std::uint32_t p, std::uint32_t e) { shares.elements[next[p]++] = e; });
     return shares;
   }
 
  private:
-  template <class EndsOf, class Visitor>
-  void forEachPatch(std::uint32_t count, const EndsOf& endsOf, const Visitor& visit) const {
-    for (std::uint32_t e = 0; e < count; ++e) {
+  template <class Item, class EndsOf, class Visitor>
+  void forEachShare(const std::vector<Item>& elements, const EndsOf& endsOf,
+                    const Visitor& visit) const {
+    for (std::uint32_t e = 0; e < elements.size(); ++e) {
       std::array<std::uint32_t, 3> seen{kNone, kNone, kNone};
       std::size_t seen_count = 0;
-      for (const std::uint32_t end : endsOf(e)) {
+      for (const std::uint32_t end : endsOf(elements[e])) {
         if (end == kNone) continue;
         const std::uint32_t patch = patch_of_[end];
         if (std::find(seen.begin(), seen.end(), patch) != seen.end()) continue;
@@ -115,23 +82,18 @@ class Layout::Builder {
 
   void build() {
     const ElementLists lists = elementsOf(system_, places_);
-    const auto share = [&](const std::vector<Element>& elements) {
-      return cut_.share(static_cast<std::uint32_t>(elements.size()),
-                        [&](std::uint32_t e) { return elements[e].ends; });
-    };
-    const Shares arcs = share(lists.arcs);
-    const std::array<Shares, 3> triangles = {share(lists.triangles[0]), share(lists.triangles[1]),
-                                             share(lists.triangles[2])};
+    std::array<Shares, 4> shares;
+    for (std::size_t sort = 0; sort < shares.size(); ++sort) {
+      shares[sort] = cut_.share(lists[sort], [](const Element& e) { return e.ends; });
+    }
     const auto oriented = orientedArcs();
-    const Shares oriented_shares = cut_.share(static_cast<std::uint32_t>(oriented.size()),
-                                              [&](std::uint32_t e) { return oriented[e].rows; });
-    for (std::size_t b = 0; b < cut_.patchCount(); ++b) {
-      Patch patch = beginPatch(b);
-      patch.arcs = fill(lists.arcs, arcs, b, layout_.arcs_);
-      for (int i = 0; i < 3; ++i) {
-        patch.triangles[i] = fill(lists.triangles[i], triangles[i], b, layout_.triangles_[i]);
-      }
-      patch.oriented = fillOriented(oriented, oriented_shares, b);
+    const Shares oriented_shares =
+        cut_.share(oriented, [](const OrientedArc& a) { return a.rows; });
+    for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
+      Patch patch = beginPatch(p);
+      patch.groups = {fill<0>(lists, shares, p), fill<1>(lists, shares, p),
+                      fill<2>(lists, shares, p), fill<3>(lists, shares, p)};
+      patch.oriented = fillOriented(oriented, oriented_shares, p);
       endPatch(patch);
     }
     namesOfGuests();
@@ -178,36 +140,49 @@ class Layout::Builder {
     return rows;
   }
 
-  template <class Spring>
-  ElementArrays::Constants constantsOf(std::uint32_t index) const {
-    if (index == kNone) return {0, 0};
+  template <class Spring, class Springs>
+  void setSpring(std::uint32_t index, Springs& springs, std::uint32_t lane) const {
     const Spring& spring = system_.springs<Spring>()[index];
-    return {spring.restValue(), spring.stiffness};
+    springs.rest[lane] = spring.restValue();
+    springs.stiffness[lane] = spring.stiffness;
+  }
+
+  template <int kEnds, int kSprings>
+  void setElement(const Element& element, std::uint32_t lane,
+                  ElementGroup<kEnds, kSprings>& group) {
+    for (int i = 0; i < kEnds; ++i) {
+      group.ends[i][lane] = static_cast<std::uint32_t>(kRowLength * rowOf(element.ends[i]));
+    }
+    for (int i = 0; i < kSprings; ++i) {
+      if (kEnds == 3 && i == 0) {
+        setSpring<SolidAngleSpring>(element.springs[i], group.springs[i], lane);
+      } else {
+        setSpring<AngleSpring>(element.springs[i], group.springs[i], lane);
+      }
+    }
   }
 
   /// Elements that the kernels take together lie far apart on the sphere, so that they do not wait
-  /// for each other's torques.
-  Patch::Range fill(const std::vector<Element>& elements, const Shares& shares, std::size_t b,
-                    ElementArrays& arrays) {
-    const std::uint32_t first = shares.first[b], count = shares.first[b + 1] - first;
-    const std::uint32_t begin = arrays.size(), room = Patch::roundedUp(count);
-    const std::uint32_t groups = room / kGroup;
+  /// for each other's forces.
+  template <int kSort>
+  Patch::Range fill(const ElementLists& lists, const std::array<Shares, 4>& shares,
+                    std::size_t patch) {
+    auto& groups = std::get<kSort>(layout_.groups_);
+    const std::uint32_t first = shares[kSort].first[patch];
+    const std::uint32_t count = shares[kSort].first[patch + 1] - first;
+    const auto begin = static_cast<std::uint32_t>(groups.size());
+    const std::uint32_t room = Patch::roundedUp(count), group_count = room / kGroup;
     layout_.most_elements_ = std::max(layout_.most_elements_, room);
-    arrays.grow(begin + room);
+    groups.resize(begin + group_count);
     for (std::uint32_t i = 0; i < room; ++i) {
-      const Element& element = elements[shares.elements[first + std::min(i, count - 1)]];
-      const auto arc = constantsOf<AngleSpring>(element.arc);
-      std::array<ElementArrays::Constants, 3> constants = {
-          arc, arc, constantsOf<AngleSpring>(element.second_arc)};
-      if (element.triangle != kNone) {
-        constants[0] = constantsOf<SolidAngleSpring>(element.triangle);
-      }
-      if (i >= count) {
-        for (auto& constant : constants) constant.stiffness = 0;
-      }
-      arrays.set(begin + i % groups * kGroup + i / groups, rowsOf(element.ends), constants);
+      const std::uint32_t e = shares[kSort].elements[first + std::min(i, count - 1)];
+      auto& group = groups[begin + i % group_count];
+      const std::uint32_t lane = i / group_count;
+      setElement(lists[kSort][e], lane, group);
+      if (i < count) continue;
+      for (auto& spring : group.springs) spring.stiffness[lane] = 0;
     }
-    return {begin, begin + room};
+    return {begin, begin + group_count};
   }
 
   /// Rows are places in the order as yet.
@@ -262,10 +237,10 @@ Layout::Layout(const System& system, const Points& positions) : order_(particleO
 }
 
 std::size_t Layout::bytes() const {
-  std::size_t elements = arcs_.bytes();
-  for (const ElementArrays& triangles : triangles_) elements += triangles.bytes();
-  return elements + order_.size() * sizeof(order_[0]) + guests_.size() * sizeof(guests_[0]) +
-         patches_.size() * sizeof(Patch) + oriented_.size() * sizeof(OrientedArc);
+  const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  const std::size_t groups =
+      std::apply([&](const auto&... lists) { return (of(lists) + ...); }, groups_);
+  return groups + of(order_) + of(guests_) + of(patches_) + of(oriented_);
 }
 
 }  // namespace spherical_springs::core

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "../kernels/step_kernels.h"
@@ -11,30 +12,14 @@
 
 namespace spherical_springs::core {
 
-/// Elements of one sort, those of one patch after those of another.
-class ElementArrays {
- public:
-  ElementArrays(int ends, int springs) : end_count_(ends), spring_count_(springs) {}
-
-  std::uint32_t size() const { return static_cast<std::uint32_t>(ends_[0].size()); }
-  Elements range(std::uint32_t begin, std::uint32_t end) const;
-
-  /// Makes room for `count` elements of no stiffness.
-  void grow(std::uint32_t count);
-
-  struct Constants {
-    double rest, stiffness;
-  };
-  void set(std::uint32_t index, const std::array<std::uint32_t, 3>& rows,
-           const std::array<Constants, 3>& constants);
-
-  std::size_t bytes() const;
-
- private:
-  int end_count_, spring_count_;
-  std::array<std::vector<std::uint32_t>, 3> ends_;
-  std::array<std::vector<double>, 3> rest_, stiffness_;
+template <class Group>
+struct GroupList : std::vector<Group> {
+  using std::vector<Group>::vector;
 };
+
+/// Elements of each sort, in the order of `ElementLists`.
+using GroupLists = std::tuple<GroupList<Arcs>, GroupList<Triangles<0>>, GroupList<Triangles<1>>,
+                              GroupList<Triangles<2>>>;
 
 /// A few hundred particles that are stepped together, and the springs that pull at them: those that
 /// join them with others are in each patch that has one of the ends.
@@ -47,8 +32,7 @@ struct Patch {
   struct Range {
     std::uint32_t begin = 0, end = 0;
   };
-  Range arcs;
-  std::array<Range, 3> triangles;
+  std::array<Range, 4> groups;  ///< of each sort
   Range oriented;
 
   std::uint32_t slotCount() const { return roundedUp(particle_count); }
@@ -77,8 +61,7 @@ class Layout {
 
   /// Of the particle that a guest is, its row at home.
   const std::vector<std::uint32_t>& guests() const { return guests_; }
-  const ElementArrays& arcs() const { return arcs_; }
-  const ElementArrays& triangles(int arcs) const { return triangles_[arcs]; }
+  const GroupLists& groups() const { return groups_; }
   const std::vector<OrientedArc>& orientedArcs() const { return oriented_; }
 
   std::size_t bytes() const;
@@ -90,8 +73,7 @@ class Layout {
   std::vector<Patch> patches_;
   std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0, most_elements_ = 0;
   std::vector<std::uint32_t> guests_;
-  ElementArrays arcs_{2, 1};
-  std::array<ElementArrays, 3> triangles_{ElementArrays{3, 1}, {3, 2}, {3, 3}};
+  GroupLists groups_;
   std::vector<OrientedArc> oriented_;
 };
 

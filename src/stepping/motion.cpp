@@ -95,6 +95,7 @@ double Motion::kickAndDriftPatch(const Patch& patch, double kick, const Viscous*
     scratch.forces.resize(layout_->largestPatch());
   }
   if (scratch.hard.size() < layout_->mostElements()) scratch.hard.resize(layout_->mostElements());
+  fetch(patch);
   welcomeGuests(patch);
   std::fill_n(scratch.forces.begin(), patch.row_count, Row{});
   addForces(patch, scratch);
@@ -141,6 +142,14 @@ const Motion::Viscous& Motion::viscousFor(double duration) {
   return viscous_.back();
 }
 
+/// Brings the positions nearer before they are wanted here and there.
+void Motion::fetch(const Patch& patch) const {
+  constexpr std::uint32_t kRowsOfALine = 2;
+  for (std::uint32_t i = 0; i < patch.slotCount(); i += kRowsOfALine) {
+    __builtin_prefetch(&positions_[patch.first_row + i]);
+  }
+}
+
 /// The present positions of the particles of other patches.
 void Motion::welcomeGuests(const Patch& patch) {
   const std::uint32_t* const home = layout_->guests().data() + patch.first_guest;
@@ -150,48 +159,47 @@ void Motion::welcomeGuests(const Patch& patch) {
 }
 
 void Motion::addForces(const Patch& patch, Scratch& scratch) const {
-  const double* const positions = positions_[patch.first_row].values;
-  double* const forces = scratch.forces[0].values;
-  const auto add = [&](ForceKernel kernel, const ElementArrays& arrays, Patch::Range range,
-                       bool triangles) {
-    if (range.begin == range.end) return;
-    const Elements elements = arrays.range(range.begin, range.end);
-    const std::uint32_t hard = kernel(elements, positions, forces, scratch.hard.data());
-    if (hard > 0) addHard(patch, elements, triangles, hard, scratch);
-  };
-  for (int i = 0; i < 3; ++i) {
-    add(kernels_.triangles[i], layout_->triangles(i), patch.triangles[i], true);
-  }
-  add(kernels_.arcs, layout_->arcs(), patch.arcs, false);
+  addElements<0>(patch, scratch);
+  addElements<1>(patch, scratch);
+  addElements<2>(patch, scratch);
+  addElements<3>(patch, scratch);
   for (std::uint32_t i = patch.oriented.begin; i < patch.oriented.end; ++i) {
     const OrientedArc& arc = layout_->orientedArcs()[i];
     addExactly(patch, system_->springs<OrientedAngleSpring>()[arc.spring], arc.rows, scratch);
   }
 }
 
-void Motion::addHard(const Patch& patch, const Elements& elements, bool triangles,
-                     std::uint32_t hard_count, Scratch& scratch) const {
-  const auto arc = [&](int constants, std::uint32_t e, std::uint32_t a, std::uint32_t b) {
-    AngleSpring spring;
-    spring.rest_angle = elements.springs[constants].rest[e];
-    spring.stiffness = elements.springs[constants].stiffness[e];
-    addExactly(patch, spring, {a, b}, scratch);
-  };
+template <int kSort>
+void Motion::addElements(const Patch& patch, Scratch& scratch) const {
+  const auto [begin, end] = patch.groups[kSort];
+  if (begin == end) return;
+  const auto* const groups = std::get<kSort>(layout_->groups()).data() + begin;
+  const std::uint32_t hard_count =
+      std::get<kSort>(kernels_.forces)(groups, end - begin, positions_[patch.first_row].values,
+                                       scratch.forces[0].values, scratch.hard.data());
   for (std::uint32_t h = 0; h < hard_count; ++h) {
-    const std::uint32_t e = scratch.hard[h];
-    const auto row = [&](int end) {
-      return static_cast<std::uint32_t>(elements.ends[end][e] / kRowLength);
-    };
-    if (!triangles) {
-      arc(0, e, row(0), row(1));
-      continue;
-    }
-    SolidAngleSpring spring;
-    spring.rest_solid_angle = elements.springs[0].rest[e];
-    spring.stiffness = elements.springs[0].stiffness[e];
-    addExactly(patch, spring, {row(0), row(1), row(2)}, scratch);
-    if (elements.springs[1].rest != nullptr) arc(1, e, row(0), row(1));
-    if (elements.springs[2].rest != nullptr) arc(2, e, row(1), row(2));
+    addExactly(patch, groups[scratch.hard[h] / kGroup], scratch.hard[h] % kGroup, scratch);
+  }
+}
+
+template <int kEnds, int kSprings>
+void Motion::addExactly(const Patch& patch, const ElementGroup<kEnds, kSprings>& group,
+                        std::uint32_t lane, Scratch& scratch) const {
+  const auto row = [&](int end) {
+    return static_cast<std::uint32_t>(group.ends[end][lane] / kRowLength);
+  };
+  if constexpr (kEnds == 3) {
+    SolidAngleSpring triangle;
+    triangle.rest_solid_angle = group.springs[0].rest[lane];
+    triangle.stiffness = group.springs[0].stiffness[lane];
+    addExactly(patch, triangle, {row(0), row(1), row(2)}, scratch);
+  }
+  constexpr int kFirstArc = kEnds - 2;
+  for (int i = kFirstArc; i < kSprings; ++i) {
+    AngleSpring arc;
+    arc.rest_angle = group.springs[i].rest[lane];
+    arc.stiffness = group.springs[i].stiffness[lane];
+    addExactly(patch, arc, {row(i - kFirstArc), row(i - kFirstArc + 1)}, scratch);
   }
 }
 

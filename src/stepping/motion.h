@@ -48,10 +48,14 @@ class Motion {
                         std::vector<Row>& moved, const Row* forces);
   double kickAndDriftPatch(const Patch& patch, double kick, const Viscous* viscous,
                            const Drifts& drifts);
+  void fetch(const Patch& patch) const;
   void welcomeGuests(const Patch& patch);
   void addForces(const Patch& patch, Scratch& scratch) const;
-  void addHard(const Patch& patch, const Elements& elements, bool triangles,
-               std::uint32_t hard_count, Scratch& scratch) const;
+  template <int kSort>
+  void addElements(const Patch& patch, Scratch& scratch) const;
+  template <int kEnds, int kSprings>
+  void addExactly(const Patch& patch, const ElementGroup<kEnds, kSprings>& group,
+                  std::uint32_t lane, Scratch& scratch) const;
   template <class Spring>
   void addExactly(const Patch& patch, const Spring& spring,
                   const std::array<std::uint32_t, Spring::kParticles>& rows,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 #include "scenes.h"
 #include "step_levels.h"
@@ -66,15 +68,28 @@ struct Bench {
     }
   }
 
-  void run(const StepKernels& kernels) {
+  template <class Group>
+  void runAs(const StepKernels& kernels) {
+    std::vector<Group> groups(kCount / kGroup);
+    for (std::uint32_t e = 0; e < kCount; ++e) {
+      Group& group = groups[e / kGroup];
+      for (int i = 0; i < ends; ++i) group.ends[i][e % kGroup] = rows[i][e];
+      for (int i = 0; i <= arcs; ++i) {
+        group.springs[i].rest[e % kGroup] = rest[i][e];
+        group.springs[i].stiffness[e % kGroup] = stiffness[i][e];
+      }
+    }
     forces.assign(positions.size(), Row{});
-    hard.assign(kCount, 0);
-    Elements elements = {};
-    elements.count = kCount;
-    for (int i = 0; i < ends; ++i) elements.ends[i] = rows[i].data();
-    for (int i = 0; i <= arcs; ++i) elements.springs[i] = {rest[i].data(), stiffness[i].data()};
-    const ForceKernel kernel = ends == 2 ? kernels.arcs : kernels.triangles[arcs];
-    hard.resize(kernel(elements, positions[0].values, forces[0].values, hard.data()));
+    hard.resize(kCount);
+    hard.resize(std::get<ForceKernel<Group>>(kernels.forces)(
+        groups.data(), kCount / kGroup, positions[0].values, forces[0].values, hard.data()));
+  }
+
+  void run(const StepKernels& kernels) {
+    if (ends == 2) return runAs<Arcs>(kernels);
+    if (arcs == 0) return runAs<Triangles<0>>(kernels);
+    if (arcs == 1) return runAs<Triangles<1>>(kernels);
+    return runAs<Triangles<2>>(kernels);
   }
 
   double squaredEdge(std::uint32_t e, int i, int j) const {

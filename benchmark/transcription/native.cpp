@@ -1,0 +1,7 @@
+#include "native.h"
+
+namespace report {
+
+void stepNatively(Scene& scene, double dt) { step(scene, dt); }
+
+}  // namespace report

@@ -1,0 +1,10 @@
+// The report transcribed, compiled for this machine's processor.
+#pragma once
+
+#include "report.h"
+
+namespace report {
+
+void stepNatively(Scene& scene, double dt);
+
+}  // namespace report
