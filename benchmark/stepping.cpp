@@ -1,7 +1,9 @@
 // Time of a step for scenes of many sizes and kinds, beside the report transcribed, in Markdown.
+// Arguments: levels of the icosphere, or --smoke, or --write-scene FILE LEVEL.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -12,6 +14,7 @@
 #include "memory_use.h"
 #include "scene_parts.h"
 #include "spherical_springs/integrator.h"
+#include "spherical_springs/scene_file.h"
 #include "spherical_springs/simulation.h"
 #include "transcription/native.h"
 
@@ -110,7 +113,7 @@ Parts shuffled(const Parts& parts, benchmark_scenes::Random& random) {
   return result;
 }
 
-/// Bytes that a simulation of the scene holds once it steps.
+/// Bytes resident for a simulation that has stepped, beyond those before.
 double bytesHeld(const std::function<Parts()>& parts) {
   const auto use = benchmark_scenes::memoryUse([&] {
     const auto simulation = std::make_shared<Simulation>(Simulation::Settings());
@@ -130,59 +133,9 @@ struct Effort {
   double seconds_a_turn;
 };
 
-// --- sizes ---
-
 Parts mesh(int level, Springs springs = Springs::both) {
   benchmark_scenes::Random random(1);
   return benchmark_scenes::displacedMesh(level, springs, random);
-}
-
-/// @return seconds a step, on all cores.
-double printSize(int level, const Effort& effort) {
-  // Before there are threads, which the measuring process would not have.
-  const double bytes = bytesHeld([&] { return mesh(level); });
-  const Scene scene = mesh(level).scene();
-  Contender one = ours(scene, IntegrationMethod::euler, 1);
-  Contender all = ours(scene, IntegrationMethod::euler, cores());
-  Contender report = transcribed(scene);
-  race({&one, &all, &report}, effort.rounds, effort.seconds_a_turn);
-  const double springs = static_cast<double>(scene.springCount());
-  const double ns = 1e9 / springs;
-  std::printf("| %zu | %.0f | %.2f | %.2f | %.1f | %.1f | %.1f | %.0f | %.0f |\n",
-              scene.particles().size(), springs, ns * one.median(), ns * all.median(),
-              ns * report.median(), report.median() / one.median(), report.median() / all.median(),
-              1 / all.median(), bytes / springs);
-  std::fflush(stdout);
-  return all.median();
-}
-
-void printSizes(const std::vector<int>& levels, const Effort& effort) {
-  std::printf(
-      "| particles | springs | ns a spring, one thread | all %d | transcription | ratio, one "
-      "thread "
-      "| all | steps/s, all | bytes a spring |\n| --- | --- | --- | --- | --- | --- | --- | --- | "
-      "--- |\n",
-      cores());
-  std::size_t largest = 0;
-  for (const int level : levels) {
-    if (printSize(level, effort) < kTimeStep) largest = 10 * (std::size_t(1) << 2 * level) + 2;
-  }
-  std::printf("\nThe largest of these that hold real time at a step of 1 ms: %zu particles.\n\n",
-              largest);
-}
-
-// --- kinds ---
-
-void printKind(const char* name, const std::function<Parts()>& parts, const Effort& effort,
-               IntegrationMethod method = IntegrationMethod::euler) {
-  const double bytes = bytesHeld(parts);
-  const Scene scene = parts().scene();
-  Contender one = ours(scene, method, 1);
-  race({&one}, effort.rounds, effort.seconds_a_turn);
-  const double springs = static_cast<double>(scene.springCount());
-  std::printf("| %s | %.0f | %.2f | %.0f |\n", name, springs, 1e9 / springs * one.median(),
-              bytes / springs);
-  std::fflush(stdout);
 }
 
 Parts withOrientedArcs(Parts parts) {
@@ -207,31 +160,90 @@ Parts withDampedSprings(Parts parts) {
   return parts;
 }
 
-void printKinds(int level, const Effort& effort) {
-  std::printf(
-      "| scene | springs | ns a spring, one thread | bytes a spring |\n| --- | --- | --- | --- "
-      "|\n");
+struct Case {
+  std::string name;
+  std::function<Parts()> parts;
+  IntegrationMethod method = IntegrationMethod::euler;
+  double bytes = 0;  ///< that a simulation of it holds once it steps
+};
+
+std::vector<Case> sizes(const std::vector<int>& levels) {
+  std::vector<Case> cases;
+  for (const int level : levels) cases.push_back({"", [=] { return mesh(level); }});
+  return cases;
+}
+
+std::vector<Case> kinds(int level) {
   const auto both = [=] { return mesh(level); };
-  printKind(
-      "angle springs", [=] { return mesh(level, Springs::arcs); }, effort);
-  printKind(
-      "solid-angle springs", [=] { return mesh(level, Springs::triangles); }, effort);
-  printKind("both", both, effort);
-  printKind(
-      "both, sent in random order",
-      [=] {
-        benchmark_scenes::Random random(2);
-        return shuffled(mesh(level), random);
-      },
-      effort);
-  printKind(
-      "both, damped particles", [=] { return withDampedParticles(both()); }, effort);
-  printKind(
-      "both, damped angle springs", [=] { return withDampedSprings(both()); }, effort);
-  printKind(
-      "all three", [=] { return withOrientedArcs(both()); }, effort);
-  printKind("both, `verlet`", both, effort, IntegrationMethod::verlet);
-  printKind("both, `fourth_order`, six stages", both, effort, IntegrationMethod::fourth_order);
+  return {{"angle springs", [=] { return mesh(level, Springs::arcs); }},
+          {"solid-angle springs", [=] { return mesh(level, Springs::triangles); }},
+          {"both", both},
+          {"both, sent in random order",
+           [=] {
+             benchmark_scenes::Random random(2);
+             return shuffled(both(), random);
+           }},
+          {"both, damped particles", [=] { return withDampedParticles(both()); }},
+          {"both, damped angle springs", [=] { return withDampedSprings(both()); }},
+          {"all three", [=] { return withOrientedArcs(both()); }},
+          {"both, `verlet`", both, IntegrationMethod::verlet},
+          {"both, `fourth_order`, six stages", both, IntegrationMethod::fourth_order}};
+}
+
+/// To be called while this process has neither threads nor memory to use again.
+void measureBytes(std::vector<Case>& cases) {
+  for (Case& c : cases) c.bytes = bytesHeld(c.parts);
+}
+
+bool isTranscribable(const Scene& scene) {
+  return scene.springs<OrientedAngleSpring>().size() == 0;
+}
+
+/// @return seconds a step, on all cores.
+double print(const Case& c, const Effort& effort) {
+  const Scene scene = c.parts().scene();
+  Contender one = ours(scene, c.method, 1);
+  Contender all = ours(scene, c.method, cores());
+  Contender report = transcribed(scene);
+  race({&one, &all, &report}, effort.rounds, effort.seconds_a_turn);
+  const double springs = static_cast<double>(scene.springCount());
+  const double ns = 1e9 / springs;
+  if (!c.name.empty()) std::printf("| %s ", c.name.c_str());
+  std::printf("| %zu | %.0f | %.2f | %.2f ", scene.particles().size(), springs, ns * one.median(),
+              ns * all.median());
+  if (isTranscribable(scene)) {
+    std::printf("| %.1f | %.1f | %.1f ", ns * report.median(), report.median() / one.median(),
+                report.median() / all.median());
+  } else {
+    std::printf("| - | - | - ");
+  }
+  std::printf("| %.0f | %.0f |\n", 1 / all.median(), c.bytes / springs);
+  std::fflush(stdout);
+  return all.median();
+}
+
+void printHead(const char* first) {
+  std::printf(
+      "%s| particles | springs | ns a spring, one thread | %d threads | transcription | ratio, one "
+      "thread | %d threads | steps/s | bytes a spring |\n",
+      first, cores(), cores());
+  std::printf("%s| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+              *first == 0 ? "" : "| --- ");
+}
+
+void printSizes(const std::vector<Case>& cases, const Effort& effort) {
+  printHead("");
+  std::size_t largest = 0;
+  for (const Case& c : cases) {
+    if (print(c, effort) < kTimeStep) largest = c.parts().size();
+  }
+  std::printf("\nThe largest of these that hold real time at a step of 1 ms: %zu particles.\n\n",
+              largest);
+}
+
+void printKinds(const std::vector<Case>& cases, const Effort& effort) {
+  printHead("| scene ");
+  for (const Case& c : cases) print(c, effort);
   std::printf("\n");
 }
 
@@ -244,9 +256,18 @@ void printThree() {
   std::printf("Three particles with three arcs: %.2f us a step.\n", 1e6 * all.median());
 }
 
+/// Writes the mesh of a level, for a node to load.
+int writeMesh(const char* path, int level) {
+  writeScene(path, mesh(level).scene(), 0);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 4 && std::string(argv[1]) == "--write-scene") {
+    return writeMesh(argv[2], std::atoi(argv[3]));
+  }
   const bool smoke = argc == 2 && std::string(argv[1]) == "--smoke";
   const Effort effort = smoke ? Effort{1, 1e-3} : Effort{9, 0.1};
   std::vector<int> levels = smoke ? std::vector<int>{0, 1, 3} : std::vector<int>{};
@@ -254,8 +275,11 @@ int main(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) levels.push_back(std::atoi(argv[i]));
     if (levels.empty()) levels = {0, 1, 2, 3, 4, 5, 6, 7, 8};
   }
-  printSizes(levels, effort);
-  printKinds(smoke ? 3 : 5, effort);
+  std::vector<Case> by_size = sizes(levels), by_kind = kinds(smoke ? 3 : 5);
+  measureBytes(by_size);
+  measureBytes(by_kind);
+  printSizes(by_size, effort);
+  printKinds(by_kind, effort);
   printThree();
   return 0;
 }

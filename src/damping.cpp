@@ -66,11 +66,24 @@ double Damping::fastestRate(const std::vector<Vector3>& gradients) const {
   return rows.size() > 0 ? rows.maxCoeff() : 0;
 }
 
+namespace {
+
+/// How many terms of exp(x) it takes until they are below rounding.
+int termsFor(double x) {
+  constexpr double kNegligible = 1e-18;
+  int terms = 1;
+  for (double term = x; term > kNegligible; term *= x / terms) ++terms;
+  return terms;
+}
+
+}  // namespace
+
 double Damping::kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
                      Points& velocities) const {
   constexpr double kFast = 1;  // decays within the duration
-  if (fastestRate(gradients) * std::abs(duration) <= kFast) {
-    return kickBySeries(gradients, torques, duration, velocities);
+  const double decays = fastestRate(gradients) * std::abs(duration);
+  if (decays <= kFast) {
+    return kickBySeries(gradients, torques, duration, termsFor(decays), velocities);
   }
   double taken = sweep(gradients, duration / 2, velocities);
   velocities += duration * torques * inverse_masses_.asDiagonal();
@@ -101,16 +114,15 @@ void Damping::addRate(const std::vector<Vector3>& gradients, const Points& veloc
 
 // Taylor's series in time: each derivative of the velocities is -M^-1 D times the one before.
 double Damping::kickBySeries(const std::vector<Vector3>& gradients, const Points& torques,
-                             double duration, Points& velocities) const {
-  constexpr int kTerms = 20;  // 1 / 20! is below rounding
+                             double duration, int terms, Points& velocities) const {
   const Points start = velocities;
   Points term = duration * torques * inverse_masses_.asDiagonal();
   addRate(gradients, velocities, -duration, term);
   Points path = duration * velocities;  // the integral of the velocities
   velocities += term;
-  for (int n = 2; n <= kTerms + 1; ++n) {
+  for (int n = 2; n <= terms + 1; ++n) {
     path += duration / n * term;
-    if (n > kTerms || term.isZero(0)) break;
+    if (n > terms || term.isZero(0)) break;
     Points next = Points::Zero(3, term.cols());
     addRate(gradients, term, -duration / n, next);
     velocities += next;

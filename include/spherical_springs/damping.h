@@ -56,7 +56,7 @@ class Damping {
   void addRate(const std::vector<Vector3>& gradients, const Points& velocities, double factor,
                Points& sum) const;
   double kickBySeries(const std::vector<Vector3>& gradients, const Points& torques, double duration,
-                      Points& velocities) const;
+                      int terms, Points& velocities) const;
   double sweep(const std::vector<Vector3>& gradients, double duration, Points& velocities) const;
   double dampViscously(double duration, Points& velocities) const;
   double dampEnds(const Damper& damper, const std::vector<Vector3>& gradients, double duration,

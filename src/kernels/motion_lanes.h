@@ -100,7 +100,7 @@ namespace spherical_springs::core {
 /// This file's own.
 static constexpr StepKernels kKernels = {
     {addAll<ShortArcs>, addAll<ShortTriangles<0>>, addAll<ShortTriangles<1>>,
-     addAll<ShortTriangles<2>>},
+     addAll<ShortTriangles<2>>, addAll<NoShortWay<OrientedArcs>>},
     kick,
     viscousKick,
     drift};

@@ -8,6 +8,8 @@ namespace {
 
 using spherical_springs::core::kRowLength;
 
+#ifdef __AVX__
+
 /// `at(k)` is the row of lane k.
 template <class RowAt>
 [[gnu::always_inline]] inline Lanes3 lanesFromRows(const RowAt& at) {
@@ -32,6 +34,27 @@ template <class Use>
     for (int k = 0; k < 4; ++k) use(4 * part + k, rows[k]);
   }
 }
+
+#else  // registers do not hold a row
+
+template <class RowAt>
+[[gnu::always_inline]] inline Lanes3 lanesFromRows(const RowAt& at) {
+  Lanes3 result;
+  for (int k = 0; k < kLanes; ++k) {
+    const double* const row = at(k);
+    result.x[k] = row[0];
+    result.y[k] = row[1];
+    result.z[k] = row[2];
+  }
+  return result;
+}
+
+template <class Use>
+[[gnu::always_inline]] inline void forEachRow(const Lanes3& v, const Use& use) {
+  for (int k = 0; k < kLanes; ++k) use(k, Four{v.x[k], v.y[k], v.z[k], 0});
+}
+
+#endif
 
 /// The rows at `offsets` [doubles].
 [[gnu::always_inline]] inline Lanes3 gatherRows(const double* rows, const std::uint32_t* offsets) {

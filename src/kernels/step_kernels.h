@@ -29,9 +29,16 @@ using Arcs = ElementGroup<2, 1>;
 template <int kArcs>
 using Triangles = ElementGroup<3, 1 + kArcs>;
 
+/// Oriented arcs, as `OrientedAngleSpring` has them.
+struct alignas(Row) OrientedArcs {
+  std::uint32_t ends[3][kGroup];
+  double rest[kGroup], stiffness[kGroup], width[kGroup];  ///< the width in use, 0 for a sharp step
+};
+
 /// Adds the forces of elements to rows of `forces`, for particles at rows of `positions`; what of a
 /// force is along the position means nothing. Nothing is added for the elements that are hard,
-/// whose indices are put into `hard`: arcs near 0 or pi, triangles with nearly antipodal corners.
+/// whose indices are put into `hard`: arcs near 0 or pi, triangles with nearly antipodal corners,
+/// sharp steps.
 /// @return how many are hard.
 template <class Group>
 using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
@@ -66,7 +73,7 @@ using DriftKernel = void (*)(const Particles& particles, double duration);
 
 struct StepKernels {
   std::tuple<ForceKernel<Arcs>, ForceKernel<Triangles<0>>, ForceKernel<Triangles<1>>,
-             ForceKernel<Triangles<2>>>
+             ForceKernel<Triangles<2>>, ForceKernel<OrientedArcs>>
       forces;
   KickKernel kick;
   ViscousKickKernel viscous_kick;

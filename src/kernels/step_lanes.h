@@ -11,6 +11,7 @@ namespace {
 using spherical_springs::core::Arcs;
 using spherical_springs::core::ElementGroup;
 using spherical_springs::core::kGroup;
+using spherical_springs::core::OrientedArcs;
 using spherical_springs::core::Triangles;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -122,15 +123,14 @@ struct LaneConstants {
   return select(y < 0, -angle, angle);
 }
 
-/// The force on `a` is pull `beside`, whose cross product with `a` is a x b and does not cancel.
-struct AnyArc {
-  Lanes pull;  ///< 0 where it is hard
-  Lanes3 beside;
-  LaneMask is_far;  ///< the force on `b` is the same; elsewhere the opposite
+struct AnyAngle {
+  Lanes value, sine;
+  Lanes3 beside;    ///< whose cross product with a is a x b and does not cancel
+  LaneMask is_far;  ///< `beside` is a + b; elsewhere b - a
   LaneMask hard;
 };
 
-inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spring) {
+inline AnyAngle anyAngle(const Lanes3& a, const Lanes3& b) {
   const Lanes3 chord = b - a, sum = a + b;
   const Lanes near = 0.25 * dot(chord, chord), far = 0.25 * dot(sum, sum);
   const LaneMask is_near = near < 0.25, is_far = far < 0.25;
@@ -140,10 +140,21 @@ inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spri
   const Lanes arcsine = root * arcsineRatio(square);
   const Lanes angle =
       select(is_near, 2 * arcsine, select(is_far, kPi - 2 * arcsine, kPi / 2 - arcsine));
-  const LaneMask hard = ~((near >= kShortest) & (far >= kShortest));
-  const Lanes sine = 2 * squareRoot(near * far);
-  const Lanes pull = select(hard, Lanes{}, spring.stiffness * (angle - spring.rest) / sine);
-  return {pull, select(is_far, sum, chord), is_far, hard};
+  return {angle, 2 * squareRoot(near * far), select(is_far, sum, chord), is_far,
+          ~((near >= kShortest) & (far >= kShortest))};
+}
+
+/// The force on `a` is pull `beside`, that on `b` the same where it is far, elsewhere the opposite.
+struct AnyArc {
+  Lanes pull;  ///< 0 where it is hard
+  Lanes3 beside;
+  LaneMask is_far, hard;
+};
+
+inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spring) {
+  const AnyAngle angle = anyAngle(a, b);
+  const Lanes pull = spring.stiffness * (angle.value - spring.rest) / angle.sine;
+  return {select0(~angle.hard, pull), angle.beside, angle.is_far, angle.hard};
 }
 
 /// Factors of a triangle's forces: 2 stiffness C / squared norm, times denominator and triple
@@ -391,6 +402,52 @@ LaneMask addAny(const Batch<Arcs>& batch, const double* positions, double* force
   addArc(arc, arc.hard, forces, batch.rows(0), batch.rows(1));
   return arc.hard;
 }
+
+/// The odd step from -1 to 1 over [-1, 1], and its slope.
+struct LaneSign {
+  Lanes value, slope;
+};
+
+inline LaneSign signOf(const Lanes& x) {
+  const Lanes u = select(x < -1, Lanes{} - 1, select(x > 1, Lanes{} + 1, x));
+  const Lanes square = u * u, rest = 1 - square;
+  return {0.125 * u * (15 - square * (10 - 3 * square)), 1.875 * rest * rest};
+}
+
+// The gradient of the triple product at a is b x c, which is a x (c - b) + area but for what is
+// along a.
+LaneMask addAny(const Batch<OrientedArcs>& batch, const double* positions, double* forces) {
+  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
+               c = batch.gather(2, positions);
+  const TriangleEdges e(a, b, c);
+  const Lanes rest = load(batch.group->rest + batch.first);
+  const Lanes stiffness = load(batch.group->stiffness + batch.first);
+  const Lanes width = load(batch.group->width + batch.first);
+  const AnyAngle angle = anyAngle(a, b);
+  const LaneMask hard = angle.hard | (width <= 0);
+  const LaneSign sign = signOf(e.triple_product / width);
+  const Lanes pull = stiffness * (sign.value * angle.value - rest);
+  const Lanes along = select0(~hard, pull * sign.value / angle.sine);
+  const Lanes across = select0(~hard, pull * sign.slope * angle.value / width);
+
+  const Lanes3 on_a = along * angle.beside;
+  const Lanes3 area = across * e.area;
+  addRows(on_a - across * cross(a, e.bc) - area, forces, batch.rows(0));
+  addRows(select(angle.is_far, on_a, negative(on_a)) - across * cross(b, e.ca) - area, forces,
+          batch.rows(1));
+  addRows(negative(across * cross(c, e.ab) + area), forces, batch.rows(2));
+  return hard;
+}
+
+/// For elements that have no short way.
+template <class OnlyGroup>
+class NoShortWay {
+ public:
+  using Group = OnlyGroup;
+  NoShortWay(const double*, double*) {}
+  bool add(const Batch<Group>&) { return false; }
+  void flush() {}
+};
 
 /// Brings a group nearer, if there is one; what is beyond the last does no harm.
 template <class Group>

@@ -9,7 +9,12 @@ namespace {
 
 using Places = std::vector<std::uint32_t>;
 
-/// Elements of one spring each, turned to have the first end first, in order.
+double widthOf(const AngleSpring&) { return 0; }
+double widthOf(const SolidAngleSpring&) { return 0; }
+double widthOf(const OrientedAngleSpring& spring) { return effectiveWidth(spring); }
+
+/// Elements of one spring each, in order; turned to have the first end first where that is the
+/// same.
 template <class Spring>
 std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Places& places) {
   std::vector<Element> elements(springs.size());
@@ -20,11 +25,13 @@ std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Plac
     for (std::size_t i = 0; i < Spring::kParticles; ++i) {
       element.ends[i] = places[springs[s].particles[i]];
     }
-    std::rotate(begin, std::min_element(begin, end), end);
+    if (Spring::kCorners == Spring::kParticles) {
+      std::rotate(begin, std::min_element(begin, end), end);
+    }
   }
   const auto key = [&](const Element& element) {
     const Spring& spring = springs[element.springs[0]];
-    return std::make_tuple(spring.restValue(), spring.stiffness);
+    return std::make_tuple(spring.restValue(), spring.stiffness, widthOf(spring));
   };
   std::sort(elements.begin(), elements.end(), [&](const Element& a, const Element& b) {
     return a.ends != b.ends ? a.ends < b.ends : key(a) < key(b);
@@ -130,6 +137,7 @@ ElementLists elementsOf(const System& system, const Places& places) {
   ElementLists lists;
   auto& arcs = lists[0];
   arcs = sortedSprings(system.springs<AngleSpring>(), places);
+  lists[4] = sortedSprings(system.springs<OrientedAngleSpring>(), places);
   const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places);
   if (triangles.empty()) return lists;
   std::vector<Sides> sides(triangles.size());

@@ -11,7 +11,8 @@ namespace spherical_springs::core {
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// What a kernel computes at once: an arc, or a triangle with up to two arcs along its edges.
+/// What a kernel computes at once: an arc, a triangle with up to two arcs along its edges, or an
+/// oriented arc.
 struct Element {
   std::array<std::uint32_t, 3> ends{kNone, kNone, kNone};  ///< places in the order of particles
   /// Indices of springs: of the arc; or of the triangle, of the arc from its first end to its
@@ -19,9 +20,9 @@ struct Element {
   std::array<std::uint32_t, 3> springs{kNone, kNone, kNone};
 };
 
-/// Arcs alone, and triangles with no, one and two arcs; in an order that depends on the springs,
-/// not on how they are listed.
-using ElementLists = std::array<std::vector<Element>, 4>;
+/// Arcs alone; triangles with no, one and two arcs; oriented arcs. In an order that depends on the
+/// springs, not on how they are listed.
+using ElementLists = std::array<std::vector<Element>, 5>;
 
 /// `places`: of each particle in the order.
 ElementLists elementsOf(const System& system, const std::vector<std::uint32_t>& places);

@@ -82,18 +82,15 @@ class Layout::Builder {
 
   void build() {
     const ElementLists lists = elementsOf(system_, places_);
-    std::array<Shares, 4> shares;
+    std::array<Shares, 5> shares;
     for (std::size_t sort = 0; sort < shares.size(); ++sort) {
       shares[sort] = cut_.share(lists[sort], [](const Element& e) { return e.ends; });
     }
-    const auto oriented = orientedArcs();
-    const Shares oriented_shares =
-        cut_.share(oriented, [](const OrientedArc& a) { return a.rows; });
     for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
       Patch patch = beginPatch(p);
       patch.groups = {fill<0>(lists, shares, p), fill<1>(lists, shares, p),
-                      fill<2>(lists, shares, p), fill<3>(lists, shares, p)};
-      patch.oriented = fillOriented(oriented, oriented_shares, p);
+                      fill<2>(lists, shares, p), fill<3>(lists, shares, p),
+                      fill<4>(lists, shares, p)};
       endPatch(patch);
     }
     namesOfGuests();
@@ -132,12 +129,8 @@ class Layout::Builder {
     return row_of_[place];
   }
 
-  std::array<std::uint32_t, 3> rowsOf(const std::array<std::uint32_t, 3>& places) {
-    std::array<std::uint32_t, 3> rows{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (places[i] != kNone) rows[i] = rowOf(places[i]);
-    }
-    return rows;
+  std::uint32_t offsetOf(std::uint32_t place) {
+    return static_cast<std::uint32_t>(kRowLength * rowOf(place));
   }
 
   template <class Spring, class Springs>
@@ -151,7 +144,7 @@ class Layout::Builder {
   void setElement(const Element& element, std::uint32_t lane,
                   ElementGroup<kEnds, kSprings>& group) {
     for (int i = 0; i < kEnds; ++i) {
-      group.ends[i][lane] = static_cast<std::uint32_t>(kRowLength * rowOf(element.ends[i]));
+      group.ends[i][lane] = offsetOf(element.ends[i]);
     }
     for (int i = 0; i < kSprings; ++i) {
       if (kEnds == 3 && i == 0) {
@@ -162,10 +155,22 @@ class Layout::Builder {
     }
   }
 
+  void setElement(const Element& element, std::uint32_t lane, OrientedArcs& group) {
+    for (int i = 0; i < 3; ++i) group.ends[i][lane] = offsetOf(element.ends[i]);
+    setSpring<OrientedAngleSpring>(element.springs[0], group, lane);
+    group.width[lane] = effectiveWidth(system_.springs<OrientedAngleSpring>()[element.springs[0]]);
+  }
+
+  template <int kEnds, int kSprings>
+  static void slacken(ElementGroup<kEnds, kSprings>& group, std::uint32_t lane) {
+    for (auto& spring : group.springs) spring.stiffness[lane] = 0;
+  }
+  static void slacken(OrientedArcs& group, std::uint32_t lane) { group.stiffness[lane] = 0; }
+
   /// Elements that the kernels take together lie far apart on the sphere, so that they do not wait
   /// for each other's forces.
   template <int kSort>
-  Patch::Range fill(const ElementLists& lists, const std::array<Shares, 4>& shares,
+  Patch::Range fill(const ElementLists& lists, const std::array<Shares, 5>& shares,
                     std::size_t patch) {
     auto& groups = std::get<kSort>(layout_.groups_);
     const std::uint32_t first = shares[kSort].first[patch];
@@ -179,37 +184,9 @@ class Layout::Builder {
       auto& group = groups[begin + i % group_count];
       const std::uint32_t lane = i / group_count;
       setElement(lists[kSort][e], lane, group);
-      if (i < count) continue;
-      for (auto& spring : group.springs) spring.stiffness[lane] = 0;
+      if (i >= count) slacken(group, lane);
     }
     return {begin, begin + group_count};
-  }
-
-  /// Rows are places in the order as yet.
-  std::vector<OrientedArc> orientedArcs() const {
-    const auto& springs = system_.springs<OrientedAngleSpring>();
-    std::vector<OrientedArc> arcs(springs.size());
-    for (std::uint32_t s = 0; s < arcs.size(); ++s) {
-      arcs[s].spring = s;
-      for (std::size_t i = 0; i < 3; ++i) arcs[s].rows[i] = places_[springs[s].particles[i]];
-    }
-    const auto key = [&](const OrientedArc& arc) {
-      const OrientedAngleSpring& spring = springs[arc.spring];
-      return std::make_tuple(arc.rows, spring.rest_angle, spring.stiffness, spring.width);
-    };
-    std::sort(arcs.begin(), arcs.end(),
-              [&](const OrientedArc& a, const OrientedArc& b) { return key(a) < key(b); });
-    return arcs;
-  }
-
-  Patch::Range fillOriented(const std::vector<OrientedArc>& oriented, const Shares& shares,
-                            std::size_t b) {
-    const auto begin = static_cast<std::uint32_t>(layout_.oriented_.size());
-    for (std::uint32_t i = shares.first[b]; i < shares.first[b + 1]; ++i) {
-      const OrientedArc& arc = oriented[shares.elements[i]];
-      layout_.oriented_.push_back({rowsOf(arc.rows), arc.spring});
-    }
-    return {begin, static_cast<std::uint32_t>(layout_.oriented_.size())};
   }
 
   /// From places in the order to rows at home.
@@ -240,7 +217,7 @@ std::size_t Layout::bytes() const {
   const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
   const std::size_t groups =
       std::apply([&](const auto&... lists) { return (of(lists) + ...); }, groups_);
-  return groups + of(order_) + of(guests_) + of(patches_) + of(oriented_);
+  return groups + of(order_) + of(guests_) + of(patches_);
 }
 
 }  // namespace spherical_springs::core

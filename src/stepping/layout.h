@@ -19,7 +19,7 @@ struct GroupList : std::vector<Group> {
 
 /// Elements of each sort, in the order of `ElementLists`.
 using GroupLists = std::tuple<GroupList<Arcs>, GroupList<Triangles<0>>, GroupList<Triangles<1>>,
-                              GroupList<Triangles<2>>>;
+                              GroupList<Triangles<2>>, GroupList<OrientedArcs>>;
 
 /// A few hundred particles that are stepped together, and the springs that pull at them: those that
 /// join them with others are in each patch that has one of the ends.
@@ -32,19 +32,12 @@ struct Patch {
   struct Range {
     std::uint32_t begin = 0, end = 0;
   };
-  std::array<Range, 4> groups;  ///< of each sort
-  Range oriented;
+  std::array<Range, 5> groups;  ///< of each sort
 
   std::uint32_t slotCount() const { return roundedUp(particle_count); }
   static std::uint32_t roundedUp(std::uint32_t count) {
     return (count + kGroup - 1) / kGroup * kGroup;
   }
-};
-
-/// An oriented-angle spring whose `particles` are rows of its patch.
-struct OrientedArc {
-  std::array<std::uint32_t, 3> rows;
-  std::uint32_t spring;
 };
 
 class Layout {
@@ -62,7 +55,6 @@ class Layout {
   /// Of the particle that a guest is, its row at home.
   const std::vector<std::uint32_t>& guests() const { return guests_; }
   const GroupLists& groups() const { return groups_; }
-  const std::vector<OrientedArc>& orientedArcs() const { return oriented_; }
 
   std::size_t bytes() const;
 
@@ -74,7 +66,6 @@ class Layout {
   std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0, most_elements_ = 0;
   std::vector<std::uint32_t> guests_;
   GroupLists groups_;
-  std::vector<OrientedArc> oriented_;
 };
 
 }  // namespace spherical_springs::core

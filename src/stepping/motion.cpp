@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "../parallel.h"
@@ -163,10 +164,7 @@ void Motion::addForces(const Patch& patch, Scratch& scratch) const {
   addElements<1>(patch, scratch);
   addElements<2>(patch, scratch);
   addElements<3>(patch, scratch);
-  for (std::uint32_t i = patch.oriented.begin; i < patch.oriented.end; ++i) {
-    const OrientedArc& arc = layout_->orientedArcs()[i];
-    addExactly(patch, system_->springs<OrientedAngleSpring>()[arc.spring], arc.rows, scratch);
-  }
+  addElements<4>(patch, scratch);
 }
 
 template <int kSort>
@@ -201,6 +199,19 @@ void Motion::addExactly(const Patch& patch, const ElementGroup<kEnds, kSprings>&
     arc.stiffness = group.springs[i].stiffness[lane];
     addExactly(patch, arc, {row(i - kFirstArc), row(i - kFirstArc + 1)}, scratch);
   }
+}
+
+void Motion::addExactly(const Patch& patch, const OrientedArcs& group, std::uint32_t lane,
+                        Scratch& scratch) const {
+  OrientedAngleSpring spring;
+  spring.rest_angle = group.rest[lane];
+  spring.stiffness = group.stiffness[lane];
+  spring.width = std::max(group.width[lane], std::numeric_limits<double>::min());
+  std::array<std::uint32_t, 3> rows;
+  for (int i = 0; i < 3; ++i) {
+    rows[i] = static_cast<std::uint32_t>(group.ends[i][lane] / kRowLength);
+  }
+  addExactly(patch, spring, rows, scratch);
 }
 
 template <class Spring>

@@ -56,6 +56,8 @@ class Motion {
   template <int kEnds, int kSprings>
   void addExactly(const Patch& patch, const ElementGroup<kEnds, kSprings>& group,
                   std::uint32_t lane, Scratch& scratch) const;
+  void addExactly(const Patch& patch, const OrientedArcs& group, std::uint32_t lane,
+                  Scratch& scratch) const;
   template <class Spring>
   void addExactly(const Patch& patch, const Spring& spring,
                   const std::array<std::uint32_t, Spring::kParticles>& rows,

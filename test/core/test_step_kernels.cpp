@@ -15,17 +15,27 @@ namespace {
 using testing::Random;
 using testing::stepKernelsHere;
 
+enum class Sort { arcs, triangles, triangles_with_arc, triangles_with_arcs, oriented_arcs };
+
 /// Elements, each on particles of its own, so that the forces on them are those of one element.
 struct Bench {
   static constexpr std::uint32_t kCount = 40;
 
-  int ends, arcs;  // corners of an element, and arcs that ride on a triangle
+  Sort sort;
+  int ends, springs;  // of an element
   std::vector<Row> positions, forces;
   std::vector<std::uint32_t> rows[3];
   std::vector<double> rest[3], stiffness[3];
+  std::vector<double> width;
   std::vector<std::uint32_t> hard;
 
-  Bench(int ends, int arcs) : ends(ends), arcs(arcs) {
+  explicit Bench(Sort sort)
+      : sort(sort),
+        ends(sort == Sort::arcs ? 2 : 3),
+        springs(sort == Sort::triangles_with_arcs  ? 3
+                : sort == Sort::triangles_with_arc ? 2
+                                                   : 1),
+        width(kCount) {
     for (int i = 0; i < 3; ++i) {
       rows[i].resize(kCount);
       rest[i].resize(kCount);
@@ -50,7 +60,11 @@ struct Bench {
     const double area = solidAngle(points[0], points[1], points[2]) * off();
     const double first = arc(points[0], points[1]).angle * off();
     const double second = arc(points[1], points[2]).angle * off();
-    const double values[3] = {ends == 3 ? area : first, first, second};
+    const bool is_triangle = sort != Sort::arcs && sort != Sort::oriented_arcs;
+    const double values[3] = {is_triangle ? area : first, first, second};
+    // Not so narrow that the rounding of the triple product decides.
+    width[e] =
+        random.between(0.3, 1) * (points[0] - points[1]).norm() * (points[1] - points[2]).norm();
     for (int i = 0; i < 3; ++i) {
       rest[i][e] = std::min(values[i], kPi);
       stiffness[i][e] = random.between(0.5, 2);
@@ -74,11 +88,28 @@ struct Bench {
     for (std::uint32_t e = 0; e < kCount; ++e) {
       Group& group = groups[e / kGroup];
       for (int i = 0; i < ends; ++i) group.ends[i][e % kGroup] = rows[i][e];
-      for (int i = 0; i <= arcs; ++i) {
+      for (int i = 0; i < springs; ++i) {
         group.springs[i].rest[e % kGroup] = rest[i][e];
         group.springs[i].stiffness[e % kGroup] = stiffness[i][e];
       }
     }
+    runGroups(groups, kernels);
+  }
+
+  void runOriented(const StepKernels& kernels) {
+    std::vector<OrientedArcs> groups(kCount / kGroup);
+    for (std::uint32_t e = 0; e < kCount; ++e) {
+      OrientedArcs& group = groups[e / kGroup];
+      for (int i = 0; i < 3; ++i) group.ends[i][e % kGroup] = rows[i][e];
+      group.rest[e % kGroup] = rest[0][e];
+      group.stiffness[e % kGroup] = stiffness[0][e];
+      group.width[e % kGroup] = width[e];
+    }
+    runGroups(groups, kernels);
+  }
+
+  template <class Group>
+  void runGroups(const std::vector<Group>& groups, const StepKernels& kernels) {
     forces.assign(positions.size(), Row{});
     hard.resize(kCount);
     hard.resize(std::get<ForceKernel<Group>>(kernels.forces)(
@@ -86,10 +117,18 @@ struct Bench {
   }
 
   void run(const StepKernels& kernels) {
-    if (ends == 2) return runAs<Arcs>(kernels);
-    if (arcs == 0) return runAs<Triangles<0>>(kernels);
-    if (arcs == 1) return runAs<Triangles<1>>(kernels);
-    return runAs<Triangles<2>>(kernels);
+    switch (sort) {
+      case Sort::arcs:
+        return runAs<Arcs>(kernels);
+      case Sort::triangles:
+        return runAs<Triangles<0>>(kernels);
+      case Sort::triangles_with_arc:
+        return runAs<Triangles<1>>(kernels);
+      case Sort::triangles_with_arcs:
+        return runAs<Triangles<2>>(kernels);
+      case Sort::oriented_arcs:
+        return runOriented(kernels);
+    }
   }
 
   double squaredEdge(std::uint32_t e, int i, int j) const {
@@ -120,41 +159,49 @@ struct Bench {
     return spring;
   }
 
+  void addElement(std::uint32_t e, std::array<Vector3, 3>& torques,
+                  std::array<double, 3>& scale) const {
+    if (sort == Sort::oriented_arcs) {
+      OrientedAngleSpring spring;
+      spring.rest_angle = rest[0][e];
+      spring.stiffness = stiffness[0][e];
+      spring.width = width[e];
+      return addExpected(spring, e, 0, torques, scale);
+    }
+    if (sort == Sort::arcs) return addExpected(angleSpring(0, e), e, 0, torques, scale);
+    SolidAngleSpring spring;
+    spring.rest_solid_angle = rest[0][e];
+    spring.stiffness = stiffness[0][e];
+    addExpected(spring, e, 0, torques, scale);
+    for (int i = 1; i < springs; ++i) addExpected(angleSpring(i, e), e, i - 1, torques, scale);
+  }
+
   /// Against `condition`; nothing of the hard ones.
   void check(double tolerance) const {
     for (std::uint32_t e = 0; e < kCount; ++e) {
       std::array<Vector3, 3> expected;
       expected.fill(Vector3::Zero());
       std::array<double, 3> scale = {0, 0, 0};
-      if (std::count(hard.begin(), hard.end(), e) == 0) {
-        if (ends == 3) {
-          SolidAngleSpring spring;
-          spring.rest_solid_angle = rest[0][e];
-          spring.stiffness = stiffness[0][e];
-          addExpected(spring, e, 0, expected, scale);
-          for (int i = 1; i <= arcs; ++i) addExpected(angleSpring(i, e), e, i - 1, expected, scale);
-        } else {
-          addExpected(angleSpring(0, e), e, 0, expected, scale);
-        }
-      }
+      if (std::count(hard.begin(), hard.end(), e) == 0) addElement(e, expected, scale);
+      // Rounding at one end shows at the others, whose torques may cancel.
+      const double largest = *std::max_element(scale.begin(), scale.end());
       for (int i = 0; i < ends; ++i) {
         const Vector3 force = Eigen::Map<const Vector3>(forces[rows[i][e] / kRowLength].values);
         const Vector3 torque = point(e, i).cross(force);
-        EXPECT_LE((torque - expected[i]).norm(), tolerance * scale[i])
+        EXPECT_LE((torque - expected[i]).norm(), tolerance * largest)
             << "element " << e << ", end " << i;
       }
     }
   }
 };
 
-/// Corners, and arcs on triangles.
-class StepKernelsOf : public ::testing::TestWithParam<std::pair<int, int>> {
+class StepKernelsOf : public ::testing::TestWithParam<Sort> {
  protected:
-  Bench bench_{GetParam().first, GetParam().second};
+  Bench bench_{GetParam()};
 };
 INSTANTIATE_TEST_SUITE_P(Elements, StepKernelsOf,
-                         ::testing::Values(std::pair(2, 0), std::pair(3, 0), std::pair(3, 1),
-                                           std::pair(3, 2)));
+                         ::testing::Values(Sort::arcs, Sort::triangles, Sort::triangles_with_arc,
+                                           Sort::triangles_with_arcs, Sort::oriented_arcs));
 
 TEST_P(StepKernelsOf, AreTheConditionsAtAnySize) {
   for (const double size : {1., 0.7, 0.5, 0.3, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6}) {
@@ -164,7 +211,7 @@ TEST_P(StepKernelsOf, AreTheConditionsAtAnySize) {
       for (const StepKernels* kernels : stepKernelsHere()) {
         bench_.run(*kernels);
         bench_.check(2e-14);
-        if (size < 0.3) EXPECT_TRUE(bench_.hard.empty());
+        if (size < 0.3 && size > 1e-5) EXPECT_TRUE(bench_.hard.empty());
       }
     }
   }
@@ -210,7 +257,7 @@ TEST_P(StepKernelsOf, LeaveTheHardOut) {
 
 // The area of an oriented triangle is modulo 4 pi.
 TEST_P(StepKernelsOf, WrapTheArea) {
-  if (GetParam().first == 2) return;
+  if (GetParam() == Sort::arcs || GetParam() == Sort::oriented_arcs) return;
   for (const double size : {1., 0.05}) {
     bench_.fill(size, 6);
     for (std::uint32_t e = 0; e < Bench::kCount; ++e) bench_.rest[0][e] = e % 2 == 0 ? -6 : 6.2;
@@ -218,6 +265,17 @@ TEST_P(StepKernelsOf, WrapTheArea) {
       bench_.run(*kernels);
       bench_.check(2e-14);
     }
+  }
+}
+
+TEST(StepKernels, LeaveSharpChangesOfSignOut) {
+  Bench bench(Sort::oriented_arcs);
+  bench.fill(0.2, 7);
+  bench.width[9] = 0;
+  for (const StepKernels* kernels : stepKernelsHere()) {
+    bench.run(*kernels);
+    bench.check(2e-14);
+    EXPECT_EQ(bench.hard, std::vector<std::uint32_t>{9});
   }
 }
 

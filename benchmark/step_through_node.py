@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""What stepping and its surroundings take from call to answer, in a node of its own.
+
+For each scene file (stepping_benchmark --write-scene FILE LEVEL makes one): ~load_scene, ~step,
+~get_scene, ~save_scene, ~add_springs of all its springs again, and the share of a core that
+publishing ~poses at 100 Hz takes. Seconds, but for ~step.
+"""
+import argparse
+import os
+import statistics
+import sys
+import time
+import xmlrpc.client
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                os.pardir, "scripts", "demo_parts"))
+
+import rosgraph  # noqa: E402
+import rospy  # noqa: E402
+from geometry_msgs.msg import PoseArray  # noqa: E402
+from node import NAME, launched  # noqa: E402
+from spherical_springs.srv import (AddParticles, AddSprings, GetScene, LoadScene,  # noqa: E402
+                                   SaveScene, Step)
+from std_srvs.srv import Trigger  # noqa: E402
+
+COLUMNS = ("particles", "springs", "~step [ns a spring]", "~load_scene", "~save_scene",
+           "~get_scene", "~add_springs", "~poses at 100 Hz [share of a core]")
+FRESH = "fresh.json"
+
+
+def timed(call, *arguments, **fields):
+    begin = time.monotonic()
+    response = call(*arguments, **fields)
+    return time.monotonic() - begin, response
+
+
+def step_time(node, springs, seconds, runs):
+    """Median of nanoseconds a spring and step."""
+    one, _ = timed(node.call, "step", Step, steps=10)
+    steps = max(1, int(10 * seconds / one))
+    return statistics.median(timed(node.call, "step", Step, steps=steps)[0]
+                             for _ in range(runs)) / steps / springs * 1e9
+
+
+def processor_time():
+    """Seconds that the node has had of all cores."""
+    uri = rosgraph.Master("/benchmark").lookupNode("/" + NAME)
+    pid = xmlrpc.client.ServerProxy(uri).getPid("/benchmark")[2]
+    with open("/proc/%d/stat" % pid) as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def poses_share(seconds):
+    """Share of a core for a subscriber that takes the messages as they are."""
+    subscriber = rospy.Subscriber(NAME + "/poses", rospy.AnyMsg, lambda message: None,
+                                  queue_size=1)
+    rospy.wait_for_message(NAME + "/poses", PoseArray, 30)
+    before = processor_time()
+    time.sleep(seconds)
+    share = (processor_time() - before) / seconds
+    subscriber.unregister()
+    return share
+
+
+def measure(node, path, seconds, runs):
+    """A row of the table."""
+    load, _ = timed(node.call, "load_scene", LoadScene, path=os.path.basename(path))
+    get, scene = timed(node.call, "get_scene", GetScene)
+    springs = len(scene.angle_springs) + len(scene.solid_angle_springs)
+    step = step_time(node, springs, seconds, runs)
+    save, _ = timed(node.call, "save_scene", SaveScene, path=FRESH)
+    share = poses_share(seconds)
+    node.call("clear", Trigger)
+    node.call("add_particles", AddParticles, particles=scene.particles)
+    add, _ = timed(node.call, "add_springs", AddSprings, angle_springs=scene.angle_springs,
+                   solid_angle_springs=scene.solid_angle_springs)
+    return (len(scene.particles), springs, "%.2f" % step, "%.3g" % load, "%.3g" % save,
+            "%.3g" % get, "%.3g" % add, "%.3f" % share)
+
+
+def print_row(cells):
+    print("| " + " | ".join(map(str, cells)) + " |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scenes", nargs="+", help="scene files, all in one directory")
+    parser.add_argument("--runs", type=int, default=5, help="of which the median is taken")
+    parser.add_argument("--seconds", type=float, default=1, help="of a run")
+    parser.add_argument("--threads", type=int, default=0, help="of the node; 0: all cores")
+    parser.add_argument("--log", default=os.devnull, help="where the node's output goes")
+    arguments = parser.parse_args()
+    directories = {os.path.dirname(os.path.abspath(path)) for path in arguments.scenes}
+    if len(directories) > 1:
+        parser.error("the scene files are in %d directories; allowed: one" % len(directories))
+    with launched("spherical_springs.launch", "running:=false", "integrator:=euler",
+                  "publish_rate:=100", "threads:=%d" % arguments.threads,
+                  "scene_directory:=" + directories.pop(), log=arguments.log) as node:
+        print_row(COLUMNS)
+        print_row(["---"] * len(COLUMNS))
+        for path in arguments.scenes:
+            print_row(measure(node, path, arguments.seconds, arguments.runs))
+
+
+if __name__ == "__main__":
+    main()
