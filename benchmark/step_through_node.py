@@ -72,7 +72,10 @@ def measure(node, path, seconds, runs):
     save, _ = timed(node.call, "save_scene", SaveScene, path=FRESH)
     share = poses_share(seconds)
     node.call("clear", Trigger)
-    node.call("add_particles", AddParticles, particles=scene.particles)
+    ids = node.call("add_particles", AddParticles, particles=scene.particles).ids
+    new_ids = dict(zip(scene.particle_ids, ids))
+    for spring in scene.angle_springs + scene.solid_angle_springs:
+        spring.particles = [new_ids[particle] for particle in spring.particles]
     add, _ = timed(node.call, "add_springs", AddSprings, angle_springs=scene.angle_springs,
                    solid_angle_springs=scene.solid_angle_springs)
     return (len(scene.particles), springs, "%.2f" % step, "%.3g" % load, "%.3g" % save,
