@@ -105,15 +105,18 @@ Energies toMessage(const core::Energies& energies) {
   return message;
 }
 
+// The turn from z to p, by half-angle formulas that do not cancel; at the south pole any axis will
+// do.
 geometry_msgs::Pose toPose(const core::Vector3& p, double radius) {
   geometry_msgs::Pose pose;
   setVector(radius * p, pose.position);
-  const double across = std::hypot(p.x(), p.y());
-  // Half of the turn from z to p; at the south pole any axis will do.
-  const double half_angle = std::atan2(across, p.z()) / 2;
-  pose.orientation.w = std::cos(half_angle);
-  pose.orientation.x = across > 0 ? -std::sin(half_angle) * p.y() / across : std::sin(half_angle);
-  pose.orientation.y = across > 0 ? std::sin(half_angle) * p.x() / across : 0;
+  const double across = std::sqrt(p.x() * p.x() + p.y() * p.y());
+  const double larger = std::sqrt((1 + std::abs(p.z())) / 2);  // of the half angle's two
+  const double smaller = across / (2 * larger);
+  const double sine = p.z() >= 0 ? smaller : larger;
+  pose.orientation.w = p.z() >= 0 ? larger : smaller;
+  pose.orientation.x = across > 0 ? -sine * p.y() / across : sine;
+  pose.orientation.y = across > 0 ? sine * p.x() / across : 0;
   return pose;
 }
 

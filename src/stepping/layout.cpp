@@ -86,6 +86,7 @@ class Layout::Builder {
     for (std::size_t sort = 0; sort < shares.size(); ++sort) {
       shares[sort] = cut_.share(lists[sort], [](const Element& e) { return e.ends; });
     }
+    reserve(shares, std::make_index_sequence<5>());
     for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
       Patch patch = beginPatch(p);
       patch.groups = {fill<0>(lists, shares, p), fill<1>(lists, shares, p),
@@ -131,6 +132,18 @@ class Layout::Builder {
 
   std::uint32_t offsetOf(std::uint32_t place) {
     return static_cast<std::uint32_t>(kRowLength * rowOf(place));
+  }
+
+  template <std::size_t... kSorts>
+  void reserve(const std::array<Shares, 5>& shares, std::index_sequence<kSorts...>) {
+    const auto groupCount = [&](const Shares& of) {
+      std::size_t count = 0;
+      for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
+        count += Patch::roundedUp(of.first[p + 1] - of.first[p]) / kGroup;
+      }
+      return count;
+    };
+    (std::get<kSorts>(layout_.groups_).reserve(groupCount(shares[kSorts])), ...);
   }
 
   template <class Spring, class Springs>
@@ -197,6 +210,7 @@ class Layout::Builder {
       }
     }
     for (std::uint32_t& guest : layout_.guests_) guest = row_of_[guest];
+    layout_.guests_.shrink_to_fit();
   }
 
   Layout& layout_;
