@@ -1,0 +1,41 @@
+// Maps of closed meshes of genus 0 to the unit sphere, without a fold, of wanted areas.
+#pragma once
+
+#include <functional>
+
+#include "spherical_springs/mesh/triangle_mesh.h"
+
+namespace spherical_springs::mesh {
+
+/// Each face's share of the sphere [sr], in proportion to `weights` (one a face, such as its area),
+/// summing to 4 pi. Shares below a millionth of the mean are raised to that.
+/// @throw std::invalid_argument for a weight that is negative or not finite, or where all are 0.
+Eigen::VectorXd faceShares(const Eigen::VectorXd& weights);
+
+struct MapOptions {
+  /// 0: areas alone; more keeps faces nearer to equal corner angles, at the expense of areas.
+  double angle_weight = 0;
+  /// Wanted standard deviation of the logarithms of area over share; better ones are not sought.
+  double tolerance = 1e-3;
+  double max_time = 20;  ///< wall [s]; the best map so far comes out when it is over
+  int threads = 1;       ///< results do not depend on it, to the last bit, unless time runs out
+  /// Called after every iteration with the share of the way that is done, from 0 to 1; returning
+  /// false ends it with the best map so far.
+  std::function<bool(double fraction)> go_on = [](double) { return true; };
+};
+
+/// One unit vector a vertex: a map of the mesh to the sphere on which every face is oriented as in
+/// the mesh and whose faces cover the sphere once, with areas as near to `shares` as can be found.
+/// @throw std::invalid_argument where `requireTopologicalSphere` does, or for shares that are not
+/// one a face, positive and finite, or for options outside their range.
+Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
+                 const MapOptions& options = {});
+
+/// The same from a start, one vector a vertex, whose directions count. A start that is folded, or
+/// covers the sphere more than once, is passed over.
+/// @throw std::invalid_argument also for a start of another size, or with a vector that is zero or
+/// not finite.
+Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
+                 const MapOptions& options = {});
+
+}  // namespace spherical_springs::mesh

@@ -1,0 +1,100 @@
+#include "spherical_springs/mesh/sphere_map.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "coverage.h"
+#include "fold_free_start.h"
+#include "half_edges.h"
+#include "spherical_springs/mesh/topological_sphere.h"
+
+namespace spherical_springs::mesh {
+namespace {
+
+std::string text(double value) {
+  std::string result = std::to_string(value);
+  return result;
+}
+
+void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
+  if (shares.size() != mesh.faces.cols()) {
+    throw std::invalid_argument("there are " + std::to_string(shares.size()) + " shares for " +
+                                std::to_string(mesh.faces.cols()) + " faces");
+  }
+  for (Eigen::Index f = 0; f < shares.size(); ++f) {
+    if (!(shares[f] > 0 && std::isfinite(shares[f]))) {
+      throw std::invalid_argument("share of face " + std::to_string(f) + " is " + text(shares[f]) +
+                                  "; allowed: above 0 [sr]");
+    }
+  }
+}
+
+void requireOptions(const MapOptions& options) {
+  const auto require = [](bool allowed, const std::string& name, double value,
+                          const std::string& range) {
+    if (!allowed) {
+      throw std::invalid_argument(name + " is " + text(value) + "; allowed: " + range);
+    }
+  };
+  require(options.angle_weight >= 0 && std::isfinite(options.angle_weight), "angle_weight",
+          options.angle_weight, "0 or more");
+  require(options.tolerance >= 0, "tolerance", options.tolerance, "0 or more");
+  require(options.max_time >= 0, "max_time", options.max_time, "0 or more [s]");
+  require(options.threads >= 1, "threads", options.threads, "1 or more");
+}
+
+Points directions(const TriangleMesh& mesh, const Points& start) {
+  if (start.cols() != mesh.vertices.cols()) {
+    throw std::invalid_argument("the start has " + std::to_string(start.cols()) +
+                                " vertices, the mesh " + std::to_string(mesh.vertices.cols()));
+  }
+  Points result(3, start.cols());
+  for (Eigen::Index v = 0; v < start.cols(); ++v) {
+    if (!start.col(v).allFinite() || start.col(v).isZero(0)) {
+      throw std::invalid_argument("vertex " + std::to_string(v) +
+                                  " of the start is zero or not finite");
+    }
+    result.col(v) = core::direction(start.col(v));
+  }
+  return result;
+}
+
+}  // namespace
+
+Eigen::VectorXd faceShares(const Eigen::VectorXd& weights) {
+  constexpr double kLeast = 1e-6;  // of the mean
+  double largest = 0;
+  for (Eigen::Index f = 0; f < weights.size(); ++f) {
+    if (!(weights[f] >= 0 && std::isfinite(weights[f]))) {
+      throw std::invalid_argument("weight of face " + std::to_string(f) + " is " +
+                                  text(weights[f]) + "; allowed: 0 or more");
+    }
+    largest = std::max(largest, weights[f]);
+  }
+  if (largest == 0) throw std::invalid_argument("the weights of all faces are 0");
+  const Eigen::VectorXd scaled = weights / largest;
+  const Eigen::VectorXd shares = scaled.cwiseMax(kLeast * scaled.mean());
+  return shares * (4 * core::kPi / shares.sum());
+}
+
+Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
+                 const MapOptions& options) {
+  requireTopologicalSphere(mesh);
+  requireShares(mesh, shares);
+  requireOptions(options);
+  const auto start = foldFreeStart(mesh.faces, HalfEdges(mesh.faces), mesh.vertices.cols(), shares);
+  return start.points.leftCols(mesh.vertices.cols());
+}
+
+Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
+                 const MapOptions& options) {
+  requireTopologicalSphere(mesh);
+  requireShares(mesh, shares);
+  requireOptions(options);
+  const Points own = directions(mesh, start);
+  if (coversOnce(mesh.faces, own)) return own;
+  return sphereMap(mesh, shares, options);
+}
+
+}  // namespace spherical_springs::mesh
