@@ -1,20 +1,22 @@
 #include "spherical_springs/mesh/sphere_map.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "coverage.h"
-#include "fold_free_start.h"
-#include "half_edges.h"
+#include "mapping.h"
 #include "spherical_springs/mesh/topological_sphere.h"
 
 namespace spherical_springs::mesh {
 namespace {
 
 std::string text(double value) {
-  std::string result = std::to_string(value);
-  return result;
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
 }
 
 void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
@@ -83,8 +85,8 @@ Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
   requireTopologicalSphere(mesh);
   requireShares(mesh, shares);
   requireOptions(options);
-  const auto start = foldFreeStart(mesh.faces, HalfEdges(mesh.faces), mesh.vertices.cols(), shares);
-  return start.points.leftCols(mesh.vertices.cols());
+  return Mapping(options).fromNothing(mesh.faces, shares,
+                                      static_cast<std::int32_t>(mesh.vertices.cols()));
 }
 
 Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
@@ -93,8 +95,8 @@ Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const 
   requireShares(mesh, shares);
   requireOptions(options);
   const Points own = directions(mesh, start);
-  if (coversOnce(mesh.faces, own)) return own;
-  return sphereMap(mesh, shares, options);
+  if (!coversOnce(mesh.faces, own)) return sphereMap(mesh, shares, options);
+  return Mapping(options).fromStart(mesh.faces, shares, own);
 }
 
 }  // namespace spherical_springs::mesh

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+
+#include "decimation.h"
+#include "map_descent.h"
+#include "spherical_springs/mesh/sphere_map.h"
+
+namespace spherical_springs::mesh {
+
+/// One map under way, of a mesh that `requireTopologicalSphere` lets pass.
+class Mapping {
+ public:
+  /// `options` must live longer.
+  explicit Mapping(const MapOptions& options) : options_(options) {}
+
+  Points fromNothing(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices);
+  /// `start` must cover the sphere once.
+  Points fromStart(const Faces& faces, const Eigen::VectorXd& shares, const Points& start);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  Points coarsest(const MeshLevel& level);
+  Points finer(const Decimation& meshes, std::size_t level, const Points& coarse);
+  void evenOut(MapDescent& descent);
+  void finish(MapEnergy& energy, MapDescent& descent);
+  bool goOn();
+
+  const MapOptions& options_;
+  const Clock::time_point begin_ = Clock::now();
+  bool ended_ = false;
+};
+
+}  // namespace spherical_springs::mesh

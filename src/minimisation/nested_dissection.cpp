@@ -1,0 +1,160 @@
+#include "nested_dissection.h"
+
+#include <algorithm>
+
+namespace spherical_springs::core {
+namespace {
+
+using Nodes = std::vector<std::uint32_t>;
+
+constexpr std::size_t kTooSmall = 24;  // to be cut
+constexpr std::uint32_t kNowhere = ~0u;
+
+class Dissection {
+ public:
+  explicit Dissection(const Graph& graph)
+      : graph_(graph), region_(graph.size(), 0), level_(graph.size(), kNowhere) {
+    result_.places.assign(graph.size(), kNowhere);
+  }
+
+  NestedDissection run() {
+    Nodes all(graph_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    dissect(std::move(all));
+    findBoundaries();
+    return std::move(result_);
+  }
+
+ private:
+  struct Halves {
+    Nodes before, separator, after;
+  };
+
+  /// @return the parts at the top of what the nodes have become.
+  Nodes dissect(Nodes nodes) {
+    if (nodes.size() <= kTooSmall) return {eliminate(nodes, {})};
+    const std::uint32_t region = ++regions_;
+    for (const std::uint32_t i : nodes) region_[i] = region;
+    // From one end of the graph, so that levels are short.
+    Nodes reached = levels(nodes.front(), region);
+    reached = levels(reached.back(), region);
+    Halves halves = cut(reached, region);
+    if (reached.size() < nodes.size()) {  // several pieces
+      for (const std::uint32_t i : nodes) {
+        if (level_[i] == kNowhere) halves.after.push_back(i);
+      }
+      if (halves.separator.empty()) halves.before = reached;
+    }
+    for (const std::uint32_t i : nodes) level_[i] = kNowhere;
+    if (halves.after.empty()) return {eliminate(nodes, {})};
+    nodes.clear();
+    Nodes children;
+    for (Nodes* half : {&halves.before, &halves.after}) {
+      if (half->empty()) continue;
+      const Nodes tops = dissect(std::move(*half));
+      children.insert(children.end(), tops.begin(), tops.end());
+    }
+    if (halves.separator.empty()) return children;
+    return {eliminate(halves.separator, children)};
+  }
+
+  std::uint32_t eliminate(const Nodes& nodes, const Nodes& children) {
+    NestedDissection::Part part;
+    part.first = static_cast<std::uint32_t>(result_.order.size());
+    for (const std::uint32_t i : nodes) {
+      result_.places[i] = static_cast<std::uint32_t>(result_.order.size());
+      result_.order.push_back(i);
+    }
+    part.end = static_cast<std::uint32_t>(result_.order.size());
+    part.children = children;
+    result_.parts.push_back(std::move(part));
+    return static_cast<std::uint32_t>(result_.parts.size() - 1);
+  }
+
+  /// Nodes of a region by their distance from `start`, which is left in `level_`.
+  Nodes levels(std::uint32_t start, std::uint32_t region) {
+    for (const std::uint32_t i : last_reached_) level_[i] = kNowhere;
+    Nodes reached = {start};
+    level_[start] = 0;
+    for (std::size_t n = 0; n < reached.size(); ++n) {
+      const std::uint32_t i = reached[n];
+      for (std::uint32_t e = graph_.first[i]; e < graph_.first[i + 1]; ++e) {
+        const std::uint32_t j = graph_.neighbours[e];
+        if (region_[j] != region || level_[j] != kNowhere) continue;
+        level_[j] = level_[i] + 1;
+        reached.push_back(j);
+      }
+    }
+    last_reached_ = reached;
+    return reached;
+  }
+
+  /// By the level that is shortest for the smaller of the halves that it makes, less what has
+  /// neighbours in one half only.
+  Halves cut(const Nodes& reached, std::uint32_t region) const {
+    const std::uint32_t depth = level_[reached.back()];
+    Nodes first(depth + 2, 0);
+    for (const std::uint32_t i : reached) ++first[level_[i] + 1];
+    for (std::uint32_t l = 0; l <= depth; ++l) first[l + 1] += first[l];
+    double best = 0;
+    std::uint32_t chosen = 0;
+    for (std::uint32_t l = 1; l < depth; ++l) {
+      const double smaller = std::min(first[l], first.back() - first[l + 1]);
+      const double quality = smaller / (first[l + 1] - first[l] + 0.02 * reached.size());
+      if (quality <= best) continue;
+      best = quality;
+      chosen = l;
+    }
+    Halves halves;
+    if (chosen == 0) return halves;
+    for (const std::uint32_t i : reached) {
+      const bool separates = level_[i] == chosen && meets(i, chosen + 1, region);
+      (separates             ? halves.separator
+       : level_[i] <= chosen ? halves.before
+                             : halves.after)
+          .push_back(i);
+    }
+    return halves;
+  }
+
+  bool meets(std::uint32_t i, std::uint32_t level, std::uint32_t region) const {
+    for (std::uint32_t e = graph_.first[i]; e < graph_.first[i + 1]; ++e) {
+      const std::uint32_t j = graph_.neighbours[e];
+      if (region_[j] == region && level_[j] == level) return true;
+    }
+    return false;
+  }
+
+  void findBoundaries() {
+    for (NestedDissection::Part& part : result_.parts) {
+      Nodes& boundary = part.boundary;
+      for (const std::uint32_t child : part.children) {
+        const Nodes& below = result_.parts[child].boundary;
+        boundary.insert(boundary.end(), below.begin(), below.end());
+      }
+      for (std::uint32_t place = part.first; place < part.end; ++place) {
+        const std::uint32_t i = result_.order[place];
+        for (std::uint32_t e = graph_.first[i]; e < graph_.first[i + 1]; ++e) {
+          boundary.push_back(result_.places[graph_.neighbours[e]]);
+        }
+      }
+      std::sort(boundary.begin(), boundary.end());
+      boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
+      boundary.erase(boundary.begin(),
+                     std::lower_bound(boundary.begin(), boundary.end(), part.end));
+    }
+  }
+
+  const Graph& graph_;
+  Nodes region_;  // to which each node belongs
+  Nodes level_;
+  Nodes last_reached_;
+  std::uint32_t regions_ = 0;
+  NestedDissection result_;
+};
+
+}  // namespace
+
+NestedDissection nestedDissection(const Graph& graph) { return Dissection(graph).run(); }
+
+}  // namespace spherical_springs::core
