@@ -38,11 +38,11 @@ void MapDescent::adaptShift(double length, double ratio) {
   }
 }
 
-double MapDescent::iterate(core::Curvature curvature) {
+double MapDescent::iterate(FaceHessian hessian) {
   constexpr int kMostAttempts = 30, kMostCuts = 25;
   constexpr double kCut = 0.6, kRaise = 10, kLeastRaised = 1e-9;
   constexpr double kSufficient = 5e-5;  // of what the gradient promises
-  energy_.evaluate(curvature);
+  energy_.evaluate(hessian);
   const double value = energy_.value();
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     if (solve()) {

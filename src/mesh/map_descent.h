@@ -13,7 +13,7 @@ class MapDescent {
   MapDescent(MapEnergy& energy, int threads);
 
   /// @return the share of the energy by which it has fallen; 0 where no step lowers it.
-  double iterate(core::Curvature curvature);
+  double iterate(FaceHessian hessian);
 
  private:
   /// @return whether the shifted Hessian was definite.

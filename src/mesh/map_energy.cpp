@@ -148,7 +148,7 @@ double MapEnergy::valueAt(const std::vector<Vector3>& points) const {
   return std::abs(areas.sum() - 4 * core::kPi) < 1 ? value : kInfinity;
 }
 
-MapEnergy::FaceTerms MapEnergy::termsOf(Eigen::Index face, core::Curvature curvature) const {
+MapEnergy::FaceTerms MapEnergy::termsOf(Eigen::Index face, FaceHessian hessian) const {
   std::array<Vector3, 3> points;
   std::array<core::TangentFrame, 3> frames;
   for (int k = 0; k < 3; ++k) {
@@ -158,13 +158,14 @@ MapEnergy::FaceTerms MapEnergy::termsOf(Eigen::Index face, core::Curvature curva
   const auto area =
       core::tangentCondition(core::SolidAngleSpring(), points, frames, core::Curvature::exact);
   const Barrier of_area = areaBarrier(area.value, shares_[face]);
+  const double area_slope = hessian == FaceHessian::gauss_newton ? 0 : of_area.slope;
   FaceTerms terms;
   terms.value = of_area.value;
   Vector6 area_gradient;
   for (int i = 0; i < 3; ++i) {
     area_gradient.segment<2>(2 * i) = area.gradient[i];
     for (int j = 0; j < 3; ++j) {
-      terms.hessian.block<2, 2>(2 * i, 2 * j) = of_area.slope * area.hessian[i][j];
+      terms.hessian.block<2, 2>(2 * i, 2 * j) = area_slope * area.hessian[i][j];
     }
   }
   terms.gradient = of_area.slope * area_gradient;
@@ -191,13 +192,13 @@ MapEnergy::FaceTerms MapEnergy::termsOf(Eigen::Index face, core::Curvature curva
       terms.hessian.block<2, 2>(2 * j, 2 * i) += mixed.transpose();
     }
   }
-  if (curvature == core::Curvature::definite) makeDefinite(terms.hessian);
+  if (hessian == FaceHessian::definite) makeDefinite(terms.hessian);
   return terms;
 }
 
-void MapEnergy::evaluate(core::Curvature curvature) {
+void MapEnergy::evaluate(FaceHessian hessian) {
   value_ = core::parallelSum(faceCount(), threads_, [&](std::ptrdiff_t f) {
-    terms_[f] = termsOf(f, curvature);
+    terms_[f] = termsOf(f, hessian);
     return terms_[f].value;
   });
   core::parallelFor(pattern_.rows(), threads_, [&](std::ptrdiff_t n) {

@@ -11,6 +11,11 @@
 
 namespace spherical_springs::mesh {
 
+/// The second derivatives of each face: the exact ones; a positive semidefinite part of them; or
+/// those that areas have where they are linear (Gauss and Newton), which serve where the areas are
+/// nearly right.
+enum class FaceHessian { exact, definite, gauss_newton };
+
 /// Over all faces, with r = area / share,
 ///   (r + 1/r - 2) / 2 + shape sum over edges of tan^2(edge / 2) / (sqrt 3 share),
 /// which is infinite at a fold and at an edge of length pi. Unknown 2 n and 2 n + 1 are coordinates
@@ -36,8 +41,8 @@ class MapEnergy {
   double valueAfter(const Eigen::VectorXd& step) const;
   void move(const Eigen::VectorXd& step);
 
-  /// Value, gradient and Hessian here, `definite` face by face or exact.
-  void evaluate(core::Curvature curvature);
+  /// Value, gradient and Hessian here.
+  void evaluate(FaceHessian hessian);
   double value() const { return value_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
@@ -56,7 +61,7 @@ class MapEnergy {
     Eigen::Matrix<double, 6, 6> hessian;
   };
   double valueAt(const std::vector<Vector3>& points) const;
-  FaceTerms termsOf(Eigen::Index face, core::Curvature curvature) const;
+  FaceTerms termsOf(Eigen::Index face, FaceHessian hessian) const;
   std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
   int threads_;

@@ -45,7 +45,7 @@ Points Mapping::coarsest(const MeshLevel& level) {
   double shape = 1;
   energy.setShape(shape);
   for (int i = 0; i < kMostIterations; ++i) {
-    const bool slow = descent.iterate(core::Curvature::definite) < kSlow;
+    const bool slow = descent.iterate(FaceHessian::definite) < kSlow;
     if (!slow) continue;
     Points points = energy.points().leftCols(level.vertex_count);
     if (coversOnce(level.faces, points)) return points;
@@ -70,31 +70,24 @@ Points Mapping::finer(const Decimation& meshes, std::size_t l, const Points& coa
 }
 
 void Mapping::evenOut(MapDescent& descent) {
-  while (goOn() && descent.iterate(core::Curvature::definite) > kSlow) {
+  while (goOn() && descent.iterate(FaceHessian::definite) > kSlow) {
   }
 }
 
-/// Lowers the weight of the faces' shape to what is asked for, and goes on there.
+/// Lowers the weight of the faces' shape, then minimises the energy that is wanted.
 void Mapping::finish(MapEnergy& energy, MapDescent& descent) {
-  constexpr double kNothing = 1e-6;  // drop of the energy in one step that ends it all
-  constexpr double kNegligible = 1e-13;
-  double shape = kRoundest;
-  Points best = energy.points();
-  double least = energy.spread();
-  for (bool last = false; !last && goOn() && least > options_.tolerance;) {
-    shape = std::max(kLowering * shape, options_.angle_weight);
-    if (shape < kNegligible) shape = 0;
+  constexpr double kLeastShape = 1e-5;
+  constexpr double kNothing = 1e-9;  // drop of the energy in one step that ends it all
+  const double wanted = options_.angle_weight;
+  const auto done = [&] { return wanted == 0 && energy.spread() <= options_.tolerance; };
+  for (double shape = kRoundest; shape > std::max(wanted, kLeastShape); shape *= kLowering) {
     energy.setShape(shape);
-    last = shape == options_.angle_weight;
-    while (goOn() && descent.iterate(core::Curvature::exact) > (last ? kNothing : kSlow) &&
-           energy.spread() > options_.tolerance) {
+    while (goOn() && !done() && descent.iterate(FaceHessian::gauss_newton) > kSlow) {
     }
-    const double spread = energy.spread();
-    if (spread > least && options_.angle_weight == 0) continue;
-    least = spread;
-    best = energy.points();
   }
-  energy.place(best);
+  energy.setShape(wanted);
+  while (goOn() && !done() && descent.iterate(FaceHessian::exact) > kNothing) {
+  }
 }
 
 bool Mapping::goOn() {
