@@ -27,20 +27,20 @@ double MapDescent::expectedDrop(double length) const {
   return -length * (energy_.gradient().dot(step_) + 0.5 * length * curvature);
 }
 
-void MapDescent::adaptShift(double length, double ratio) {
-  constexpr double kShort = 0.3, kPoor = 0.25, kGood = 0.75;
+void MapDescent::adaptShift(double length, double ratio, bool may_fall) {
+  constexpr double kShort = 0.3, kPoor = 0.25, kGood = 0.75, kFall = 5;
   if (length < kShort) {
     shift_ *= 4;
   } else if (ratio < kPoor) {
     shift_ *= 3;
-  } else if (length == 1 && ratio > kGood) {
-    shift_ /= 5;
+  } else if (length == 1 && ratio > kGood && may_fall) {
+    shift_ /= kFall;
   }
 }
 
-double MapDescent::iterate(FaceHessian hessian) {
+bool MapDescent::iterate(FaceHessian hessian) {
   constexpr int kMostAttempts = 30, kMostCuts = 25;
-  constexpr double kCut = 0.6, kRaise = 10, kLeastRaised = 1e-9;
+  constexpr double kCut = 0.6, kRaise = 4, kLeastRaised = 1e-9;
   constexpr double kSufficient = 5e-5;  // of what the gradient promises
   energy_.evaluate(hessian);
   const double value = energy_.value();
@@ -51,14 +51,16 @@ double MapDescent::iterate(FaceHessian hessian) {
       for (int cut = 0; cut < kMostCuts; ++cut, length *= kCut) {
         const double next = energy_.valueAfter(length * step_);
         if (!(next < value + kSufficient * length * slope)) continue;
-        adaptShift(length, (value - next) / expectedDrop(length));
+        adaptShift(length, (value - next) / expectedDrop(length), attempt == 0);
         energy_.move(length * step_);
-        return (value - next) / value;
+        length_ = length;
+        drop_ = (value - next) / value;
+        return true;
       }
     }
     shift_ = std::max(kRaise * shift_, kLeastRaised);
   }
-  return 0;
+  return false;
 }
 
 }  // namespace spherical_springs::mesh

@@ -12,20 +12,29 @@ class MapDescent {
   /// `energy` must live longer.
   MapDescent(MapEnergy& energy, int threads);
 
-  /// @return the share of the energy by which it has fallen; 0 where no step lowers it.
-  double iterate(FaceHessian hessian);
+  /// @return whether a step has lowered the energy.
+  bool iterate(FaceHessian hessian);
+
+  /// Iterates while `go_on()`, until a step that was not cut lowers the energy by less than the
+  /// share `slow`, or none does.
+  template <class GoOn>
+  void run(FaceHessian hessian, double slow, const GoOn& go_on) {
+    while (go_on() && iterate(hessian) && (length_ < 1 || drop_ > slow)) {
+    }
+  }
 
  private:
   /// @return whether the shifted Hessian was definite.
   bool solve();
   double expectedDrop(double length) const;
-  void adaptShift(double length, double ratio);
+  void adaptShift(double length, double ratio, bool may_fall);
 
   MapEnergy& energy_;
   core::MultifrontalCholesky inverse_;
   MapEnergy::Hessian shifted_;
   Eigen::VectorXd step_;
   double shift_ = 1e-2;
+  double length_ = 0, drop_ = 0;  // of the last step: the share of it taken, that of the energy
 };
 
 }  // namespace spherical_springs::mesh

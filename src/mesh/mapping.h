@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
+#include <optional>
 
 #include "decimation.h"
 #include "map_descent.h"
@@ -21,15 +23,22 @@ class Mapping {
  private:
   using Clock = std::chrono::steady_clock;
 
-  Points coarsest(const MeshLevel& level);
-  Points finer(const Decimation& meshes, std::size_t level, const Points& coarse);
-  void evenOut(MapDescent& descent);
-  void finish(MapEnergy& energy, MapDescent& descent);
+  struct Candidate {
+    Points points;
+    double spread = std::numeric_limits<double>::infinity();
+  };
+
+  std::optional<Points> coarsest(const MeshLevel& level);
+  std::optional<Candidate> prepared(const Decimation& meshes);
+  void roundOff(MapEnergy& energy, MapDescent& descent);
+  Candidate finished(const Faces& faces, const Eigen::VectorXd& shares, const Points& points);
+  bool wanting(const MapEnergy& energy);
   bool goOn();
 
   const MapOptions& options_;
   const Clock::time_point begin_ = Clock::now();
   bool ended_ = false;
+  bool has_map_ = false;
 };
 
 }  // namespace spherical_springs::mesh

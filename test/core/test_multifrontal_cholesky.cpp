@@ -1,0 +1,106 @@
+// Exact solutions of sparse systems along a nested dissection.
+#include <gtest/gtest.h>
+
+#include "mesh/map_energy.h"
+#include "minimisation/multifrontal_cholesky.h"
+#include "shapes.h"
+#include "spherical_springs/mesh/sphere_map.h"
+
+namespace spherical_springs::core {
+namespace {
+
+/// A definite matrix on the edges of a mesh, and one like it that is not.
+struct Case {
+  explicit Case(int level) {
+    const auto mesh = mesh::testing::deformedSphere(level, [](const Vector3& p) { return p; });
+    mesh::MapEnergy energy(mesh.faces, mesh::faceShares(mesh::faceAreas(mesh)), mesh.vertices, 1);
+    energy.setShape(0.3);
+    energy.evaluate(mesh::FaceHessian::definite);
+    pattern = energy.pattern();
+    values = energy.hessian();
+    for (std::size_t i = 0; i < pattern.rows(); ++i) {
+      values[pattern.diagonal[i]] += 0.1 * Eigen::Matrix2d::Identity();
+    }
+  }
+  VectorOf<double> times(const VectorOf<double>& x) const {
+    VectorOf<double> result(x.size());
+    for (std::size_t i = 0; i < pattern.rows(); ++i) {
+      part<2>(result, i) = rowProduct<double, 2>(pattern.graph, values, x, pattern.graph.first[i],
+                                                 pattern.graph.first[i + 1]);
+    }
+    return result;
+  }
+  BlockPattern pattern;
+  Blocks<double, 2> values;
+};
+
+VectorOf<double> randomVector(std::size_t size) {
+  testing::Random random(3);
+  VectorOf<double> result(size);
+  for (double& component : result) component = random.between(-1, 1);
+  return result;
+}
+
+TEST(NestedDissection, OrdersEveryNodeOnceAndBoundsFill) {
+  const Case scene(4);
+  const NestedDissection dissection = nestedDissection(scene.pattern.graph);
+  std::vector<bool> seen(scene.pattern.rows(), false);
+  for (const std::uint32_t i : dissection.order) {
+    EXPECT_FALSE(seen[i]);
+    seen[i] = true;
+  }
+  EXPECT_EQ(dissection.order.size(), seen.size());
+  double entries = 0;
+  for (const auto& part : dissection.parts) {
+    const double own = part.end - part.first;
+    entries += own * (own + part.boundary.size());
+  }
+  EXPECT_LT(entries, 100 * seen.size());  // a band along a curve takes some 250 a row
+}
+
+TEST(NestedDissection, TakesSeveralPieces) {
+  Graph graph;  // of nodes on their own
+  graph.first.push_back(0);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    graph.neighbours.push_back(i);
+    graph.first.push_back(i + 1);
+  }
+  EXPECT_EQ(nestedDissection(graph).order.size(), 100u);
+}
+
+TEST(MultifrontalCholesky, Solves) {
+  for (const int level : {0, 1, 2, 3, 4}) {
+    const Case scene(level);
+    MultifrontalCholesky inverse(scene.pattern, 1);
+    ASSERT_TRUE(inverse.refresh(scene.values));
+    const VectorOf<double> x = randomVector(2 * scene.pattern.rows());
+    VectorOf<double> found;
+    inverse.apply(scene.times(x), found);
+    EXPECT_LT((found - x).norm(), 1e-9 * x.norm()) << level;
+  }
+}
+
+TEST(MultifrontalCholesky, TellsOfAMatrixThatIsNotDefinite) {
+  Case scene(3);
+  MultifrontalCholesky inverse(scene.pattern, 1);
+  const Eigen::Matrix2d block = scene.values[scene.pattern.diagonal[77]];
+  scene.values[scene.pattern.diagonal[77]] -= 2 * block;
+  EXPECT_FALSE(inverse.refresh(scene.values));
+  scene.values[scene.pattern.diagonal[77]] = block;
+  EXPECT_TRUE(inverse.refresh(scene.values));
+}
+
+TEST(MultifrontalCholesky, DoesNotDependOnThreads) {
+  const Case scene(5);
+  const VectorOf<double> b = randomVector(2 * scene.pattern.rows());
+  VectorOf<double> one, three;
+  for (const int threads : {1, 3}) {
+    MultifrontalCholesky inverse(scene.pattern, threads);
+    ASSERT_TRUE(inverse.refresh(scene.values));
+    inverse.apply(b, threads == 1 ? one : three);
+  }
+  EXPECT_EQ(one, three);
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
