@@ -30,39 +30,42 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 
 }  // namespace
 
-Points Mapping::fromNothing(const Faces& faces, const Eigen::VectorXd& shares,
-                            std::int32_t vertices) {
+Points Mapping::run(const std::optional<Points>& start) {
   constexpr double kPromising = 10;  // tolerances
-  std::vector<std::int32_t> sizes = coarsestSizes(vertices);
-  std::vector<Candidate> candidates;
+  std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
+  Candidates candidates;
+  if (start) add(roundedOff(*start), candidates);
   Candidate best;
-  const auto worse = [](const Candidate& a, const Candidate& b) { return a.spread > b.spread; };
-  while (best.spread > options_.tolerance && (best.points.size() == 0 || goOn())) {
-    const bool promising = !candidates.empty() &&
-                           (candidates.back().spread < kPromising * options_.tolerance || ended_);
+  while (!has_map_ || (best.spread > wantedSpread() && goOn())) {
+    const bool promising =
+        !candidates.empty() && (candidates.back().spread < kPromising * wantedSpread() || ended_);
     if (!promising && !sizes.empty()) {
-      const Decimation meshes = decimation(faces, shares, vertices, sizes.front());
+      if (auto next = prepared(sizes.front())) add(std::move(*next), candidates);
       sizes.erase(sizes.begin());
-      if (auto next = prepared(meshes)) candidates.push_back(std::move(*next));
-      has_map_ = !candidates.empty() || best.points.size() > 0;
-      std::sort(candidates.begin(), candidates.end(), worse);
     } else if (!candidates.empty()) {
-      Candidate next = finished(faces, shares, candidates.back().points);
+      Candidate next = finished(candidates.back().points);
       candidates.pop_back();
-      if (worse(best, next)) best = std::move(next);
+      if (next.spread < best.spread) best = std::move(next);
     } else {
       break;
     }
   }
+  if (best.points.size() == 0 && !candidates.empty()) best = candidates.back();
   if (best.points.size() == 0) throw std::runtime_error("no start evens out");
   return best.points;
 }
 
-Points Mapping::fromStart(const Faces& faces, const Eigen::VectorXd& shares, const Points& start) {
-  MapEnergy energy(faces, shares, start, options_.threads);
-  MapDescent descent(energy, options_.threads);
-  roundOff(energy, descent);
-  return finished(faces, shares, energy.points()).points;
+/// Best last.
+void Mapping::add(Candidate candidate, Candidates& candidates) {
+  has_map_ = true;
+  candidates.push_back(std::move(candidate));
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.spread > b.spread; });
+}
+
+/// Where areas are not all that counts, the first map is as good as any.
+double Mapping::wantedSpread() const {
+  return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
 
 /// Whatever the time, while there is no other map: only when the face that has been cut has shrunk,
@@ -85,8 +88,9 @@ std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
   return {};
 }
 
-/// Everything but the last phase, which is the longest.
-std::optional<Mapping::Candidate> Mapping::prepared(const Decimation& meshes) {
+/// Everything but the last phase, which is the longest, from a coarsest mesh of a size.
+std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
+  const Decimation meshes = decimation(faces_, shares_, vertices_, size);
   std::optional<Points> start = coarsest(meshes.levels.front());
   if (!start) return {};
   Points points = std::move(*start);
@@ -98,34 +102,30 @@ std::optional<Mapping::Candidate> Mapping::prepared(const Decimation& meshes) {
     MapDescent descent(energy, options_.threads);
     energy.setShape(kRoundest);
     descent.run(FaceHessian::definite, kSlow, [&] { return goOn(); });
-    if (&level == &meshes.levels.back()) roundOff(energy, descent);
     points = energy.points();
   }
-  Candidate result;
-  const MeshLevel& whole = meshes.levels.back();
-  result.spread = MapEnergy(whole.faces, whole.shares, points, options_.threads).spread();
-  result.points.resize(3, points.cols());
-  for (Eigen::Index v = 0; v < points.cols(); ++v) {
-    result.points.col(meshes.vertices[v]) = points.col(v);
-  }
-  return result;
+  Points result(3, vertices_);
+  for (std::int32_t v = 0; v < vertices_; ++v) result.col(meshes.vertices[v]) = points.col(v);
+  return roundedOff(result);
 }
 
 /// Lowers the weight of the faces' shape, as long as that is quick.
-void Mapping::roundOff(MapEnergy& energy, MapDescent& descent) {
+Mapping::Candidate Mapping::roundedOff(const Points& points) {
   constexpr double kLeastShape = 1e-5;
+  MapEnergy energy(faces_, shares_, points, options_.threads);
+  MapDescent descent(energy, options_.threads);
   for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
        shape *= kLowering) {
     energy.setShape(shape);
     descent.run(FaceHessian::gauss_newton, kSlow, [&] { return wanting(energy); });
   }
+  return {energy.points(), energy.spread()};
 }
 
 /// Minimises the energy that is wanted.
-Mapping::Candidate Mapping::finished(const Faces& faces, const Eigen::VectorXd& shares,
-                                     const Points& points) {
+Mapping::Candidate Mapping::finished(const Points& points) {
   constexpr double kNothing = 1e-9;  // drop of the energy in one step that ends it
-  MapEnergy energy(faces, shares, points, options_.threads);
+  MapEnergy energy(faces_, shares_, points, options_.threads);
   MapDescent descent(energy, options_.threads);
   energy.setShape(options_.angle_weight);
   descent.run(FaceHessian::exact, kNothing, [&] { return wanting(energy); });

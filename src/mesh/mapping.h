@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "decimation.h"
 #include "map_descent.h"
@@ -13,12 +14,13 @@ namespace spherical_springs::mesh {
 /// One map under way, of a mesh that `requireTopologicalSphere` lets pass.
 class Mapping {
  public:
-  /// `options` must live longer.
-  explicit Mapping(const MapOptions& options) : options_(options) {}
+  /// What is passed must live longer.
+  Mapping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
+          const MapOptions& options)
+      : faces_(faces), shares_(shares), vertices_(vertices), options_(options) {}
 
-  Points fromNothing(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices);
-  /// `start` must cover the sphere once.
-  Points fromStart(const Faces& faces, const Eigen::VectorXd& shares, const Points& start);
+  /// `start`, if any, must cover the sphere once.
+  Points run(const std::optional<Points>& start);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -27,14 +29,20 @@ class Mapping {
     Points points;
     double spread = std::numeric_limits<double>::infinity();
   };
+  using Candidates = std::vector<Candidate>;
 
+  void add(Candidate candidate, Candidates& candidates);
   std::optional<Points> coarsest(const MeshLevel& level);
-  std::optional<Candidate> prepared(const Decimation& meshes);
-  void roundOff(MapEnergy& energy, MapDescent& descent);
-  Candidate finished(const Faces& faces, const Eigen::VectorXd& shares, const Points& points);
+  std::optional<Candidate> prepared(std::int32_t size);
+  Candidate roundedOff(const Points& points);
+  Candidate finished(const Points& points);
+  double wantedSpread() const;
   bool wanting(const MapEnergy& energy);
   bool goOn();
 
+  const Faces& faces_;
+  const Eigen::VectorXd& shares_;
+  const std::int32_t vertices_;
   const MapOptions& options_;
   const Clock::time_point begin_ = Clock::now();
   bool ended_ = false;

@@ -85,8 +85,8 @@ Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
   requireTopologicalSphere(mesh);
   requireShares(mesh, shares);
   requireOptions(options);
-  return Mapping(options).fromNothing(mesh.faces, shares,
-                                      static_cast<std::int32_t>(mesh.vertices.cols()));
+  return Mapping(mesh.faces, shares, static_cast<std::int32_t>(mesh.vertices.cols()), options)
+      .run({});
 }
 
 Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
@@ -96,7 +96,8 @@ Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const 
   requireOptions(options);
   const Points own = directions(mesh, start);
   if (!coversOnce(mesh.faces, own)) return sphereMap(mesh, shares, options);
-  return Mapping(options).fromStart(mesh.faces, shares, own);
+  return Mapping(mesh.faces, shares, static_cast<std::int32_t>(mesh.vertices.cols()), options)
+      .run(own);
 }
 
 }  // namespace spherical_springs::mesh
