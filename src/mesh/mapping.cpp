@@ -1,6 +1,7 @@
 #include "mapping.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -16,14 +17,22 @@ constexpr double kLowering = 0.3;  // of that weight from round to round
 constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a round
 
 /// Sizes of coarsest meshes to begin with, one after another while the map is not good enough. The
-/// way from a small one is short; one that is too small has lost thin limbs.
+/// way from a small one is short; one that is too small has lost thin limbs. Each leads to a
+/// minimum of its own, so that more of them help where there is time.
 std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
-  constexpr std::int32_t kManageable = 5000;
-  std::vector<std::int32_t> sizes = {std::min(400, vertices)};
-  for (const std::int32_t size : {std::min(vertices, kManageable), 1000, 200, 2500}) {
-    if (size <= vertices && std::find(sizes.begin(), sizes.end(), size) == sizes.end()) {
-      sizes.push_back(size);
-    }
+  constexpr std::int32_t kLeast = 100, kMost = 5000;
+  constexpr int kMore = 24;
+  constexpr double kGoldenRatio = 0.618033988749895;
+  const std::int32_t most = std::min(vertices, kMost), least = std::min(most, kLeast);
+  std::vector<std::int32_t> sizes;
+  const auto add = [&](std::int32_t size) {
+    if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+  };
+  for (const std::int32_t size : {400, most, 1000, 2500}) add(std::min(size, most));
+  const double ratio = static_cast<double>(most) / least;
+  for (int i = 1; i <= kMore; ++i) {
+    const double place = i * kGoldenRatio - std::floor(i * kGoldenRatio);
+    add(static_cast<std::int32_t>(least * std::pow(ratio, place)));
   }
   return sizes;
 }
