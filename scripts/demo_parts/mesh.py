@@ -1,4 +1,4 @@
-"""A closed mesh made from an icosphere, and what its map on the unit sphere does to areas."""
+"""Closed meshes: one made from an icosphere, files of others, what a map to the sphere does to areas."""
 import numpy as np
 
 GOLDEN = (1 + 5 ** 0.5) / 2
@@ -65,6 +65,21 @@ def bumpy(directions, bumps=12, seed=2):
     widths = random.uniform(0.25, 0.3, bumps)
     radius = 1 + np.exp((directions @ peaks.T - 1) / widths ** 2) @ heights
     return directions * radius[:, None]
+
+
+def write_obj(path, vertices, faces):
+    with open(path, "w") as file:
+        np.savetxt(file, vertices, "v %.17g %.17g %.17g")
+        np.savetxt(file, faces + 1, "f %d %d %d")
+
+
+def read_obj(path):
+    """Vertices and faces; of a face's corners only their vertices."""
+    rows = {"v": [], "f": []}
+    with open(path) as file:
+        for kind, *fields in (line.split() for line in file if line[:2] in ("v ", "f ")):
+            rows[kind].append([field.split("/")[0] for field in fields])
+    return np.array(rows["v"], float), np.array(rows["f"], int) - 1
 
 
 def areas(vertices, faces):

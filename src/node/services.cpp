@@ -175,9 +175,12 @@ void Services::saveScene(const SaveScene::Request& request, SaveScene::Response&
 }
 
 void Services::clear(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  runner_.change([](core::Simulation& s) { s.clear(); });
+  runner_.change([&](core::Simulation& s) {
+    response.message = "removed " + counted(s.scene().particles().size(), "particle") + " and " +
+                       counted(s.scene().springCount(), "spring") + ", time 0";
+    s.clear();
+  });
   publisher_.diagnostics().relaxed("");
-  response.message = "the scene is empty, time 0";
 }
 
 void Services::reset(const std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

@@ -1,8 +1,9 @@
 #include <cmath>
-#include <fstream>
 #include <new>
 #include <set>
+#include <stdexcept>
 
+#include "../files.h"
 #include "../scene_checks.h"
 #include "fields.h"
 #include "format.h"
@@ -122,11 +123,7 @@ class SceneReader {
 }  // namespace
 
 SceneFile readScene(const fs::path& path, SceneLimits limits) {
-  if (fs::exists(path) && !fs::is_regular_file(path)) {
-    throw std::runtime_error("cannot read " + path.string() + ": not a file");
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) failTo("read", path);
+  std::ifstream in = openToRead(path);
   try {
     return readScene(in, limits);
   } catch (const std::invalid_argument& fault) {

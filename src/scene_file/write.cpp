@@ -1,10 +1,6 @@
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <atomic>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "../files.h"
 #include "format.h"
 #include "spherical_springs/scene_file.h"
 
@@ -12,7 +8,6 @@ namespace spherical_springs::core {
 namespace {
 
 using Json = nlohmann::json;
-namespace fs = std::filesystem;
 
 /// One object on one line, its fields in the order in which they are written.
 class ObjectWriter {
@@ -60,21 +55,6 @@ void writeItems(std::ostream& out, const char* name, const IdTable<Item>& table)
   out << "\n]";
 }
 
-/// Puts what was written to a file, or to a directory's list of names, on the disk.
-void flushToDisk(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) failTo("open", path);
-  const bool done = ::fsync(file) == 0;
-  ::close(file);
-  if (!done) failTo("write", path);
-}
-
-/// A name that no other save has, in this process or another.
-fs::path partOf(const fs::path& path) {
-  static std::atomic<unsigned> saves{0};
-  return path.string() + ".part" + std::to_string(::getpid()) + "-" + std::to_string(saves++);
-}
-
 }  // namespace
 
 void writeScene(std::ostream& out, const Scene& scene, double time) {
@@ -87,22 +67,8 @@ void writeScene(std::ostream& out, const Scene& scene, double time) {
   out << "}\n";
 }
 
-void writeScene(const fs::path& path, const Scene& scene, double time) {
-  const fs::path part = partOf(path);
-  try {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    if (!out) failTo("write", part);
-    writeScene(out, scene, time);
-    out.close();
-    if (!out) failTo("write", part);
-    flushToDisk(part);
-    fs::rename(part, path);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw;
-  }
-  flushToDisk(path.has_parent_path() ? path.parent_path() : ".");
+void writeScene(const std::filesystem::path& path, const Scene& scene, double time) {
+  replaceFile(path, [&](std::ostream& out) { writeScene(out, scene, time); });
 }
 
 }  // namespace spherical_springs::core

@@ -1,0 +1,43 @@
+#include "face_files.h"
+
+#include <iomanip>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "spherical_springs/range.h"
+
+namespace spherical_springs::mesh {
+
+Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces) {
+  const core::Range allowed{0, std::numeric_limits<double>::max(), "a positive number", true};
+  Eigen::VectorXd densities(faces);
+  Eigen::Index count = 0;
+  for (std::string text; in >> text; ++count) {
+    char* end;
+    const double density = std::strtod(text.c_str(), &end);
+    if (*end != '\0' || !allowed.contains(density)) {
+      throw std::invalid_argument("density " + std::to_string(count) + " is " + text +
+                                  "; allowed: " + allowed.allowed);
+    }
+    if (count < faces) densities[count] = density;
+  }
+  if (count != faces) {
+    throw std::invalid_argument("it has " + std::to_string(count) +
+                                " numbers; allowed: " + std::to_string(faces) + ", one a face");
+  }
+  return densities;
+}
+
+void writeMetrics(std::ostream& out, const Eigen::VectorXd& shares, const FaceDistortion& faces) {
+  out << "face,share_sr,area_sr,log_area_ratio,angle_change_1_rad,angle_change_2_rad,"
+         "angle_change_3_rad\n"
+      << std::setprecision(std::numeric_limits<double>::max_digits10);
+  for (Eigen::Index f = 0; f < shares.size(); ++f) {
+    out << f << ',' << shares[f] << ',' << faces.areas[f] << ',' << faces.log_area_ratios[f];
+    for (const double change : faces.angle_changes.col(f)) out << ',' << change;
+    out << '\n';
+  }
+}
+
+}  // namespace spherical_springs::mesh

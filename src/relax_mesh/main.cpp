@@ -1,0 +1,118 @@
+// Maps a closed surface to the sphere by way of the node; options.cpp says how to ask for it.
+#include <ros/init.h>
+
+#include <cstdio>
+#include <iostream>
+#include <stdexcept>
+#include <thread>
+
+#include "../files.h"
+#include "face_files.h"
+#include "obj_file.h"
+#include "spherical_springs/mesh/distortion.h"
+#include "spherical_springs/mesh/sphere_map.h"
+#include "springs_node.h"
+#include "task.h"
+#include "texture_coordinates.h"
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+using mesh::FaceDistortion;
+
+/// Of angle springs beside solid-angle springs: these alone leave some freedom.
+constexpr double kWeakest = 1e-5;
+
+/// Of the map and of its relaxation [s].
+struct Times {
+  explicit Times(Eigen::Index vertices)
+      : map(14 + 1.2e-3 * vertices),
+        relaxation(4 + 0.4e-3 * vertices) {}
+  double map, relaxation;
+};
+
+double secondsSince(const ros::WallTime& begin) { return (ros::WallTime::now() - begin).toSec(); }
+
+void print(const char* when, const FaceDistortion& faces, double seconds) {
+  constexpr double kDegrees = 180 / core::kPi;
+  const mesh::Distortion d = summary(faces);
+  std::printf(
+      "%s: areas: spread %.3g, mean %.3g, worst face %.3g, folded %ld, sum %.9g sr; "
+      "angles: mean %.3g deg, worst %.3g deg; %.2f s\n",
+      when, d.spread, d.mean, d.worst, static_cast<long>(d.folded), d.total_area,
+      d.mean_angle * kDegrees, d.worst_angle * kDegrees, seconds);
+  std::fflush(stdout);
+}
+
+Points mapOf(const Task& task, double angle_weight) {
+  mesh::MapOptions options;
+  options.angle_weight = angle_weight;
+  options.max_time = Times(task.surface.vertices.cols()).map;
+  options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.go_on = [](double) { return ros::ok(); };
+  Points map = task.start ? sphereMap(task.surface, task.shares, *task.start, options)
+                          : sphereMap(task.surface, task.shares, options);
+  if (!ros::ok()) throw std::runtime_error("interrupted");
+  return map;
+}
+
+bool coversOnce(const mesh::Distortion& d) {
+  return d.folded == 0 && std::abs(d.total_area - 4 * core::kPi) < 1e-6;
+}
+
+void write(const Options& options, const Task& task, const Points& map,
+           const FaceDistortion& faces) {
+  core::replaceFile(options.output, [&](std::ostream& out) {
+    mesh::writeObj(out, {map, task.surface.faces});
+  });
+  if (!options.uv.empty()) {
+    core::replaceFile(options.uv, [&](std::ostream& out) {
+      writeObj(out, task.surface, mesh::longitudeLatitude(map, task.surface.faces));
+    });
+  }
+  if (!options.metrics.empty()) {
+    core::replaceFile(options.metrics,
+                      [&](std::ostream& out) { writeMetrics(out, task.shares, faces); });
+  }
+}
+
+void run(const Options& options) {
+  const Task task = readTask(options);
+  const auto distortionOf = [&](const Points& map) {
+    return faceDistortion(task.surface, task.shares, map);
+  };
+  SpringsNode node(options.node);
+  const auto begin = ros::WallTime::now();
+  if (task.start) print("before", distortionOf(*task.start), 0);
+  Points map = mapOf(task, options.angle_weight);
+  FaceDistortion faces = distortionOf(map);
+  if (!task.start) print("before", faces, secondsSince(begin));
+
+  const Points relaxed =
+      node.relax({map, task.surface.faces, task.shares, kWeakest + options.angle_weight},
+                 Times(task.surface.vertices.cols()).relaxation);
+  const FaceDistortion after = distortionOf(relaxed);
+  if (coversOnce(summary(after)) && summary(after).spread < summary(faces).spread) {
+    map = relaxed;
+    faces = after;
+  }
+  if (!coversOnce(summary(faces))) throw std::runtime_error("no map without folds was found");
+  write(options, task, map, faces);
+  print("after", faces, secondsSince(begin));
+}
+
+}  // namespace
+}  // namespace spherical_springs::relax_mesh
+
+int main(int argc, char** argv) {
+  using namespace spherical_springs::relax_mesh;
+  try {
+    ros::init(argc, argv, "relax_mesh", ros::init_options::AnonymousName);  // takes its arguments
+    const auto options = parseOptions({argv + 1, argv + argc});
+    if (options) run(*options);
+  } catch (const std::exception& fault) {
+    std::cerr << "error: " << fault.what() << std::endl;
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,72 @@
+#include "options.h"
+
+#include <boost/program_options.hpp>
+#include <iostream>
+#include <stdexcept>
+
+#include "spherical_springs/range.h"
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+namespace fs = std::filesystem;
+namespace po = boost::program_options;
+
+po::options_description described(Options& options) {
+  const auto path = [](fs::path& target) {
+    return po::value<std::string>()->notifier([&](const std::string& text) { target = text; });
+  };
+  po::options_description all(
+      "relax_mesh: maps a closed surface to the sphere, every face to its share of the area.\n"
+      "The node at work is left paused, with the map in place of the scene that it "
+      "had.\n\nOptions");
+  auto add = all.add_options();
+  add("help", "show this");
+  add("mesh", path(options.mesh)->required(),
+      "the surface: an OBJ file of triangles, closed, in one piece, without handles");
+  add("output", path(options.output)->required(),
+      "OBJ file to write: the same faces, their vertices on the unit sphere");
+  add("sphere", path(options.sphere), "start from the vertices of this OBJ file");
+  add("uv", path(options.uv),
+      "OBJ file to write: the surface with longitude and latitude as texture coordinates");
+  add("angle-weight", po::value(&options.angle_weight)->default_value(0, "0"),
+      "0 keeps areas alone; more keeps angles too");
+  add("density", path(options.density),
+      "file of positive numbers, one a face: what a face weighs for its area");
+  add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");
+  add("node", po::value(&options.node)->default_value("spherical_springs"),
+      "name of the node that relaxes");
+  return all;
+}
+
+void requireDirectoryFor(const char* option, const fs::path& path) {
+  if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
+    throw std::invalid_argument(std::string(option) + " is " + path.string() +
+                                "; allowed: a file in a directory that exists");
+  }
+}
+
+}  // namespace
+
+std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
+  Options options;
+  const po::options_description all = described(options);
+  po::variables_map values;
+  try {
+    po::store(po::command_line_parser(arguments).options(all).positional({}).run(), values);
+    if (arguments.empty() || values.count("help") > 0) {
+      std::cout << all;
+      return std::nullopt;
+    }
+    po::notify(values);
+  } catch (const po::error& fault) {
+    throw std::invalid_argument(std::string(fault.what()) + "; see relax_mesh --help");
+  }
+  core::requireInside({0, 1e6, "0 to 1e6"}, options.angle_weight, "--angle-weight");
+  requireDirectoryFor("--output", options.output);
+  requireDirectoryFor("--uv", options.uv);
+  requireDirectoryFor("--metrics", options.metrics);
+  return options;
+}
+
+}  // namespace spherical_springs::relax_mesh

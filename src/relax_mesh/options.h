@@ -1,0 +1,22 @@
+// The command line of relax_mesh.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace spherical_springs::relax_mesh {
+
+struct Options {
+  std::filesystem::path mesh, output;
+  std::filesystem::path sphere, uv, density, metrics;  ///< empty where not asked for
+  double angle_weight = 0;
+  std::string node;
+};
+
+/// Nothing where only help was asked for, which goes to standard output.
+/// @throw std::invalid_argument that names the option, its value and what is allowed.
+std::optional<Options> parseOptions(const std::vector<std::string>& arguments);
+
+}  // namespace spherical_springs::relax_mesh

@@ -1,0 +1,121 @@
+#include "springs_node.h"
+
+#include <ros/master.h>
+#include <ros/service.h>
+#include <spherical_springs/AddParticles.h>
+#include <spherical_springs/AddSprings.h>
+#include <spherical_springs/GetScene.h>
+#include <spherical_springs/Relax.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <cmath>
+#include <iostream>
+#include <stdexcept>
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+constexpr double kPatience = 10;     // for a node that is about to start [s]
+constexpr double kPrecision = 1e-6;  // of the areas' shares
+
+AddParticles::Request particles(const Points& positions) {
+  AddParticles::Request request;
+  request.particles.resize(positions.cols());
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    auto& position = request.particles[i].position;
+    position.x = positions(0, i);
+    position.y = positions(1, i);
+    position.z = positions(2, i);
+  }
+  return request;
+}
+
+/// A spring that holds 1/2 J where its angle, or solid angle, is off by all of `rest`.
+double stiffnessAt(double rest) { return 1 / (rest * rest); }
+
+/// `ids`: of the vertices. Each edge of a closed surface rises in one of its two faces.
+AddSprings::Request springs(const Network& network, const std::vector<std::uint32_t>& ids) {
+  AddSprings::Request request;
+  for (Eigen::Index f = 0; f < network.faces.cols(); ++f) {
+    const auto face = network.faces.col(f);
+    SolidAngleSpring area;
+    area.particles = {ids[face[0]], ids[face[1]], ids[face[2]]};
+    area.rest_solid_angle = network.rests[f];
+    area.stiffness = stiffnessAt(area.rest_solid_angle);
+    request.solid_angle_springs.push_back(area);
+    for (int i = 0; i < 3; ++i) {
+      const auto from = face[i], to = face[(i + 1) % 3];
+      if (from > to) continue;
+      AngleSpring arc;
+      arc.particles = {ids[from], ids[to]};
+      arc.rest_angle = core::arc(network.start.col(from), network.start.col(to)).angle;
+      arc.stiffness = network.arc_weight * stiffnessAt(arc.rest_angle);
+      request.angle_springs.push_back(arc);
+    }
+  }
+  return request;
+}
+
+/// [N m]; a face of the mean size that is off by this share turns its vertices so.
+double torqueOf(double share, const Network& network) {
+  return share * std::sqrt(network.faces.cols() / (4 * core::kPi));
+}
+
+Points positionsOf(const GetScene::Response& scene) {
+  Points result(3, scene.particles.size());
+  for (Eigen::Index i = 0; i < result.cols(); ++i) {
+    const auto& position = scene.particles[i].position;
+    result.col(i) << position.x, position.y, position.z;
+  }
+  return result;
+}
+
+}  // namespace
+
+SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(name)) {
+  constexpr auto kRemedy =
+      "; start one: roslaunch spherical_springs spherical_springs.launch running:=false";
+  // Without a master every other call of ROS would wait for one, for ever.
+  if (!ros::master::check()) {
+    throw std::runtime_error("no ROS master answers at " + ros::master::getURI() + kRemedy);
+  }
+  ros::start();
+  const auto deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
+  while (!ros::service::exists(name_ + "/relax", false)) {
+    if (!ros::ok() || ros::WallTime::now() > deadline) {
+      throw std::runtime_error("no node " + name_ + " answers" + kRemedy);
+    }
+    ros::WallDuration(0.02).sleep();
+  }
+}
+
+template <class Service>
+typename Service::Response SpringsNode::call(const char* service,
+                                             const typename Service::Request& request) {
+  typename Service::Response response;
+  const std::string full_name = name_ + "/" + service;
+  auto to_send = request;
+  if (!ros::service::call(full_name, to_send, response)) {
+    throw std::runtime_error(full_name + " does not answer");
+  }
+  if (!response.success) throw std::runtime_error(full_name + ": " + response.message);
+  return response;
+}
+
+Points SpringsNode::relax(const Network& network, double max_time) {
+  std_srvs::SetBool::Request pause;
+  pause.data = false;
+  call<std_srvs::SetBool>("set_running", pause);
+  std::cout << name_ << ": " << call<std_srvs::Trigger>("clear").message << std::endl;
+  const auto ids = call<AddParticles>("add_particles", particles(network.start)).ids;
+  call<AddSprings>("add_springs", springs(network, ids));
+  Relax::Request request;
+  request.keep_orientation = true;
+  request.max_time = max_time;
+  request.tolerance = torqueOf(kPrecision, network);
+  std::cout << name_ << ": " << call<Relax>("relax", request).message << std::endl;
+  return positionsOf(call<GetScene>("get_scene"));
+}
+
+}  // namespace spherical_springs::relax_mesh

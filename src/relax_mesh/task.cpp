@@ -1,0 +1,74 @@
+#include "task.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "../files.h"
+#include "face_files.h"
+#include "obj_file.h"
+#include "spherical_springs/mesh/sphere_map.h"
+#include "spherical_springs/mesh/topological_sphere.h"
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Puts the file's name before the reason why what it holds is refused.
+template <class Read>
+auto about(const fs::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(path.string() + ": " + fault.what());
+  }
+}
+
+mesh::TriangleMesh readSurface(const fs::path& path) {
+  mesh::TriangleMesh surface = mesh::readObj(path);
+  about(path, [&] { mesh::requireTopologicalSphere(surface); });
+  return surface;
+}
+
+Eigen::VectorXd weightsOf(const Options& options, const mesh::TriangleMesh& surface) {
+  const Eigen::VectorXd areas = mesh::faceAreas(surface);
+  if (options.density.empty()) return areas;
+  std::ifstream in = core::openToRead(options.density);
+  return about(options.density,
+               [&] { return areas.cwiseProduct(mesh::readDensities(in, areas.size())).eval(); });
+}
+
+Points directions(const Points& vertices) {
+  Points result(3, vertices.cols());
+  for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+    if (vertices.col(i).isZero(0)) {
+      throw std::invalid_argument("vertex " + std::to_string(i) +
+                                  " is at the origin, and has no direction");
+    }
+    result.col(i) = core::direction(vertices.col(i));
+  }
+  return result;
+}
+
+Points readStart(const fs::path& path, const mesh::Faces& faces) {
+  const mesh::TriangleMesh sphere = mesh::readObj(path);
+  return about(path, [&] {
+    if (sphere.faces.cols() != faces.cols() || sphere.faces != faces) {
+      throw std::invalid_argument("its faces are not those of the surface");
+    }
+    return directions(sphere.vertices);
+  });
+}
+
+}  // namespace
+
+Task readTask(const Options& options) {
+  Task task;
+  task.surface = readSurface(options.mesh);
+  const Eigen::VectorXd weights = weightsOf(options, task.surface);
+  task.shares = about(options.mesh, [&] { return mesh::faceShares(weights); });
+  if (!options.sphere.empty()) task.start = readStart(options.sphere, task.surface.faces);
+  return task;
+}
+
+}  // namespace spherical_springs::relax_mesh

@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "relax_mesh/options.h"
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+std::string reasonAgainst(std::vector<std::string> further) {
+  std::vector<std::string> arguments = {"--mesh", "a.obj", "--output", "b.obj"};
+  arguments.insert(arguments.end(), further.begin(), further.end());
+  try {
+    parseOptions(arguments);
+  } catch (const std::invalid_argument& fault) {
+    return fault.what();
+  }
+  return "taken";
+}
+
+TEST(Options, AreRead) {
+  const auto options = parseOptions({"--mesh", "a b.obj", "--output=c.obj", "--sphere", "s.obj",
+                                     "--uv", "u.obj", "--density", "d", "--metrics", "m.csv",
+                                     "--angle-weight", "0.25", "--node", "n"});
+  ASSERT_TRUE(options);
+  EXPECT_EQ("a b.obj", options->mesh);
+  EXPECT_EQ("c.obj", options->output);
+  EXPECT_EQ("s.obj", options->sphere);
+  EXPECT_EQ("u.obj", options->uv);
+  EXPECT_EQ("d", options->density);
+  EXPECT_EQ("m.csv", options->metrics);
+  EXPECT_EQ(0.25, options->angle_weight);
+  EXPECT_EQ("n", options->node);
+}
+
+TEST(Options, AreLeftOutWhereNobodyNeedsThem) {
+  const auto options = parseOptions({"--mesh", "a.obj", "--output", "b.obj"});
+  ASSERT_TRUE(options);
+  EXPECT_TRUE(options->sphere.empty());
+  EXPECT_TRUE(options->uv.empty());
+  EXPECT_EQ(0, options->angle_weight);
+  EXPECT_EQ("spherical_springs", options->node);
+  EXPECT_FALSE(parseOptions({"--help"}));
+}
+
+TEST(Options, AreRefusedWithAReason) {
+  EXPECT_THROW(parseOptions({"--mesh", "a.obj"}), std::invalid_argument);
+  EXPECT_THROW(parseOptions({"--output", "a.obj"}), std::invalid_argument);
+  EXPECT_NE("taken", reasonAgainst({"--mesch", "x"}));
+  EXPECT_NE("taken", reasonAgainst({"c.obj"}));
+  EXPECT_NE("taken", reasonAgainst({"--angle-weight", "much"}));
+  EXPECT_EQ("--angle-weight is -1; allowed: 0 to 1e6", reasonAgainst({"--angle-weight=-1"}));
+  EXPECT_EQ("--angle-weight is nan; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "nan"}));
+  EXPECT_EQ("--uv is /nowhere/u.obj; allowed: a file in a directory that exists",
+            reasonAgainst({"--uv", "/nowhere/u.obj"}));
+}
+
+}  // namespace
+}  // namespace spherical_springs::relax_mesh

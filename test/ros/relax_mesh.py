@@ -1,0 +1,32 @@
+"""The command relax_mesh, and what it says and writes."""
+
+import re
+import subprocess
+
+import roslib.packages
+
+from node_client import LONG, PACKAGE
+
+FIGURES = ('spread', 'mean', 'worst face', 'folded', 'sum')
+
+
+class Outcome:
+    def __init__(self, process):
+        self.code, self.output, self.error = (
+            process.returncode, process.stdout, process.stderr.strip())
+
+    def figures(self, when):
+        """What the line of that name says of areas, by name."""
+        line, = re.findall('^%s: areas: (.*?);' % when, self.output, re.MULTILINE)
+        return {name: float(re.search(name + r' ([-+.e\d]+)', line).group(1)) for name in FIGURES}
+
+
+def relax_mesh(environment=None, **options):
+    """Run it to its end; relax_mesh(mesh='a.obj', angle_weight=1) asks for --mesh a.obj
+    --angle-weight 1."""
+    program = roslib.packages.find_node(PACKAGE, 'relax_mesh')[0]
+    arguments = [text for name, value in options.items()
+                 for text in ('--' + name.replace('_', '-'), str(value))]
+    return Outcome(subprocess.run([program] + arguments, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True, timeout=4 * LONG,
+                                  env=environment))

@@ -1,0 +1,99 @@
+"""Closed surfaces, and texts of files that hold none."""
+
+import os
+import sys
+
+import numpy as np
+import rospkg
+
+from node_client import PACKAGE
+
+sys.path.append(os.path.join(rospkg.RosPack().get_path(PACKAGE), 'scripts', 'demo_parts'))
+import mesh  # noqa: E402
+
+TETRAHEDRON = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])
+
+
+def bumpy(levels=3):
+    directions, faces, _ = mesh.icosphere(levels, levels)
+    return mesh.bumpy(directions), faces
+
+
+def star(levels=4, arms=5, length=3):
+    """Long arms round a middle."""
+    directions, faces, _ = mesh.icosphere(levels, levels)
+    turn = 2 * np.pi * np.arange(arms) / arms
+    towards = np.stack([np.cos(turn), np.sin(turn), np.zeros(arms)], axis=1)
+    radius = 1 + length * np.exp(12 * (directions @ towards.T - 1)).sum(axis=1)
+    return directions * radius[:, None], faces
+
+
+def torus(count=6):
+    i, j = np.meshgrid(np.arange(count), np.arange(count))
+    big, small = 2 * np.pi * i.ravel() / count, 2 * np.pi * j.ravel() / count
+    vertices = np.stack([(2 + np.cos(small)) * np.cos(big), (2 + np.cos(small)) * np.sin(big),
+                         np.sin(small)], axis=1)
+
+    def at(di, dj):
+        return ((i + di) % count + count * ((j + dj) % count)).ravel()
+
+    lower = np.stack([at(0, 0), at(1, 0), at(1, 1)], axis=1)
+    upper = np.stack([at(0, 0), at(1, 1), at(0, 1)], axis=1)
+    return vertices, np.concatenate([lower, upper])
+
+
+def projective_plane():
+    """Six vertices, no inside: the icosahedron with opposite points made one."""
+    faces = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5), (0, 5, 1),
+             (1, 2, 4), (2, 3, 5), (3, 4, 1), (4, 5, 2), (5, 1, 3)]
+    return np.random.RandomState(1).normal(size=(6, 3)), np.array(faces)
+
+
+def obj(vertices, faces):
+    return ''.join(['v %.17g %.17g %.17g\n' % tuple(v) for v in vertices] +
+                   ['f' + ''.join(' %d' % (i + 1) for i in face) + '\n' for face in faces])
+
+
+def _broken():
+    vertices, faces = bumpy(1)
+    points = np.random.RandomState(2).normal(size=(7, 3))
+    flipped = faces.copy()
+    flipped[3] = flipped[3, ::-1]
+    doubled = faces.copy()
+    doubled[3, 1] = doubled[3, 0]
+    text = obj(vertices, faces)
+
+    def with_coordinate(value):
+        changed = vertices.copy()
+        changed[1, 2] = value
+        return obj(changed, faces), 'line 2: a vertex is not three finite numbers'
+
+    return {
+        'open': (obj(vertices, faces[1:]), 'open: edge'),
+        'flipped': (obj(vertices, flipped), 'runs the same way in faces'),
+        'not orientable': (obj(*projective_plane()), 'runs the same way in faces'),
+        'joined at a vertex': (obj(points, np.concatenate([TETRAHEDRON, TETRAHEDRON + 3])),
+                               'several pieces|vertex 3 joins parts'),
+        'joined at an edge': (
+            obj(points[:6], np.concatenate([TETRAHEDRON, np.array([0, 1, 4, 5])[TETRAHEDRON]])),
+            'edge 0-1 runs the same way in faces'),
+        'several pieces': (obj(np.concatenate([vertices, vertices + 9]),
+                               np.concatenate([faces, faces + len(vertices)])), 'several pieces'),
+        'torus': (obj(*torus()), 'genus 1'),
+        'degenerate': (obj(vertices, doubled), 'face 3 has one vertex twice'),
+        'vertex in no face': (obj(np.concatenate([vertices, points]), faces),
+                              'vertex 42 belongs to no face'),
+        'no area': (obj(0 * vertices, faces), 'the weights of all faces are 0'),
+        'three faces': (obj(points[:4], TETRAHEDRON[:3]), 'has 3 faces; allowed: 4 or more'),
+        'quadrilateral': (text + 'f 1 2 3 4\n', 'line 123: a face has 4 corners; allowed: 3'),
+        'nan': with_coordinate(np.nan),
+        'infinite': with_coordinate(np.inf),
+        'empty': ('', 'not an OBJ file'),
+        'truncated': (text[:-20], 'a face has|not the number of a vertex|open: edge'),
+        'truncated vertices': (text[:300], 'three finite numbers|no face'),
+        'binary': (bytes(range(256)) * 99, 'not an OBJ file'),
+    }
+
+
+# Name: the file's text or bytes, and a pattern of the reason why it is refused.
+BROKEN = _broken()
