@@ -1,0 +1,68 @@
+// OBJ files of any bytes: refused, or meshes that are written and read back the same; those that are
+// topological spheres have maps without folds and texture coordinates.
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "relax_mesh/obj_file.h"
+#include "soundness.h"
+#include "spherical_springs/mesh/distortion.h"
+#include "spherical_springs/mesh/sphere_map.h"
+#include "spherical_springs/mesh/topological_sphere.h"
+
+using namespace spherical_springs;  // NOLINT: a program, not a header
+using core::fuzzing::require;
+
+namespace {
+
+mesh::TriangleMesh meshOf(const std::string& text) {
+  std::istringstream in(text);
+  return mesh::readObj(in);
+}
+
+void requireReadBackTheSame(const mesh::TriangleMesh& mesh) {
+  std::ostringstream written;
+  writeObj(written, mesh);
+  const mesh::TriangleMesh again = meshOf(written.str());
+  require(mesh.vertices == again.vertices, "vertices read back to the last bit");
+  require(mesh.faces == again.faces, "faces read back");
+}
+
+void requireMapped(const mesh::TriangleMesh& surface) {
+  const Eigen::VectorXd shares = mesh::faceShares(mesh::faceAreas(surface));
+  mesh::MapOptions options;
+  options.max_time = 0.02;
+  const core::Points map = mesh::sphereMap(surface, shares, options);
+  core::fuzzing::requireUnitVectors(map);
+  const mesh::Distortion distortion = summary(faceDistortion(surface, shares, map));
+  require(distortion.folded == 0, "no face is folded");
+  require(std::abs(distortion.total_area - 4 * core::kPi) < 1e-9, "the sphere is covered once");
+  require(std::isfinite(distortion.spread + distortion.worst_angle), "distortion is finite");
+  const mesh::TextureCoordinates texture = mesh::longitudeLatitude(map, surface.faces);
+  require(texture.places.allFinite(), "texture coordinates are finite");
+  require(texture.corners.minCoeff() >= 0 && texture.corners.maxCoeff() < texture.places.cols(),
+          "corners have texture coordinates");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  mesh::TriangleMesh mesh;
+  try {
+    mesh = meshOf(std::string(data, data + size));
+  } catch (const std::invalid_argument&) {
+    return 0;
+  }
+  require(mesh.vertices.allFinite(), "vertices are finite");
+  require(mesh.faces.minCoeff() >= 0 && mesh.faces.maxCoeff() < mesh.vertices.cols(),
+          "corners are vertices");
+  requireReadBackTheSame(mesh);
+  try {
+    requireTopologicalSphere(mesh);
+    requireMapped(mesh);
+  } catch (const std::invalid_argument&) {
+  }
+  return 0;
+}
