@@ -256,7 +256,11 @@ RelaxationResult Relaxer::relax(const System& system, const Points& positions,
     newton_ = std::make_unique<Newton>(system, positions);
   }
   RelaxationResult result = Relaxation(system, positions, options, *newton_, goes_on).run();
-  last_end_ = result.positions;
+  if (options.method == RelaxationMethod::newton) {
+    last_end_ = result.positions;
+  } else {
+    newton_.reset();  // it was not on the way
+  }
   return result;
 }
 

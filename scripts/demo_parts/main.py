@@ -1,5 +1,6 @@
 """The demo; scripts/demo sets up what this needs."""
 import signal
+import subprocess
 import sys
 
 import node
@@ -22,8 +23,9 @@ def main():
     try:
         with node.launched("octant.launch", "running:=false", log=LOG) as springs:
             moments = octant.watch(springs)
-            relaxed = relaxation.relax(springs)
-    except (RuntimeError, rospy.ROSException, rospy.ServiceException) as fault:
+            relaxed = relaxation.relax()
+    except (RuntimeError, rospy.ROSException, rospy.ServiceException,
+            subprocess.CalledProcessError) as fault:
         sys.exit("demo: %s; more is in %s" % (fault, LOG))
     picture.save(PICTURE, moments, relaxed)
     print("\nThe picture of both is %s" % PICTURE)

@@ -9,8 +9,8 @@ import time
 import xmlrpc.client
 
 import mesh
+import network
 import numpy as np
-import relaxation
 import rosgraph
 from node import NAME, launched
 from spherical_springs.srv import Relax
@@ -72,7 +72,7 @@ def resident_memory():
 def send_mesh(node):
     points, faces, _ = mesh.icosphere(levels=5, line_level=5)
     areas = mesh.areas(mesh.bumpy(points), faces)
-    relaxation.send(node, points, mesh.edges_of(faces), faces, areas / areas.sum())
+    network.send(node, points, mesh.edges_of(faces), faces, areas / areas.sum())
 
 
 def run(node, seconds):

@@ -86,7 +86,6 @@ inline void addGradient(const std::uint32_t (&rows)[N][kLanes], std::size_t end,
 template <std::size_t N>
 inline void addBlock(const SpringFields<N>& springs, std::uint32_t first, std::size_t i,
                      std::size_t j, const LaneBlock& block, const HessianArrays& arrays) {
-  constexpr FourIndices kTransposed = {0, 2, 1, 3};
   for (int part = 0; part < kLanes / 4; ++part) {
     Four values[4] = {fourOf(block.xx, part), fourOf(block.yx, part), fourOf(block.xy, part),
                       fourOf(block.yy, part)};
@@ -97,7 +96,7 @@ inline void addBlock(const SpringFields<N>& springs, std::uint32_t first, std::s
       if (place == HessianArrays::kNotStored) continue;
       addFour(values[k], arrays.hessian + 4 * place);
       if (i == j) continue;
-      addFour(__builtin_shuffle(values[k], kTransposed), arrays.hessian + 4 * opposite);
+      addFour(shuffled<0, 2, 1, 3>(values[k], values[k]), arrays.hessian + 4 * opposite);
     }
   }
 }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "../shuffled.h"
+
 namespace {
 
 #ifdef __AVX512F__
@@ -18,7 +20,6 @@ using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneMask = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
 
 using Four = double __attribute__((vector_size(4 * sizeof(double))));
-using FourIndices = std::int64_t __attribute__((vector_size(4 * sizeof(double))));
 
 inline Four loadFour(const double* from) {
   Four result;
@@ -44,16 +45,14 @@ inline void setFour(const Four& value, int part, Lanes& x) {
 
 /// Rows become columns.
 inline void transpose(Four (&rows)[4]) {
-  constexpr FourIndices kEven = {0, 4, 2, 6}, kOdd = {1, 5, 3, 7};
-  constexpr FourIndices kLow = {0, 1, 4, 5}, kHigh = {2, 3, 6, 7};
-  const Four a = __builtin_shuffle(rows[0], rows[1], kEven);
-  const Four b = __builtin_shuffle(rows[0], rows[1], kOdd);
-  const Four c = __builtin_shuffle(rows[2], rows[3], kEven);
-  const Four d = __builtin_shuffle(rows[2], rows[3], kOdd);
-  rows[0] = __builtin_shuffle(a, c, kLow);
-  rows[1] = __builtin_shuffle(b, d, kLow);
-  rows[2] = __builtin_shuffle(a, c, kHigh);
-  rows[3] = __builtin_shuffle(b, d, kHigh);
+  const Four a = shuffled<0, 4, 2, 6>(rows[0], rows[1]);
+  const Four b = shuffled<1, 5, 3, 7>(rows[0], rows[1]);
+  const Four c = shuffled<0, 4, 2, 6>(rows[2], rows[3]);
+  const Four d = shuffled<1, 5, 3, 7>(rows[2], rows[3]);
+  rows[0] = shuffled<0, 1, 4, 5>(a, c);
+  rows[1] = shuffled<0, 1, 4, 5>(b, d);
+  rows[2] = shuffled<2, 3, 6, 7>(a, c);
+  rows[3] = shuffled<2, 3, 6, 7>(b, d);
 }
 
 inline Lanes squareRoot(const Lanes& x) {

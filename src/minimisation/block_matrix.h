@@ -7,6 +7,7 @@
 #include <cstring>
 #include <vector>
 
+#include "../shuffled.h"
 #include "graph.h"
 
 namespace spherical_springs::core {
@@ -85,13 +86,12 @@ inline Eigen::Vector2f rowProduct(const Graph& graph, const Blocks<float, 2>& va
                                   const VectorOf<float>& x, std::uint32_t begin,
                                   std::uint32_t end) {
   using Two = double __attribute__((vector_size(16)));
-  using Order = std::int32_t __attribute__((vector_size(16)));
   FourFloats sum = {};
   for (std::uint32_t e = begin; e < end; ++e) {
     double pair;  // of floats
     std::memcpy(&pair, x.data() + 2 * graph.neighbours[e], sizeof(pair));
-    const auto factors =
-        __builtin_shuffle(reinterpret_cast<FourFloats>(Two{pair, pair}), Order{0, 0, 1, 1});
+    const auto pairs = reinterpret_cast<FourFloats>(Two{pair, pair});
+    const auto factors = shuffled<0, 0, 1, 1>(pairs, pairs);
     sum += load(values[e].data()) * factors;
   }
   return {sum[0] + sum[2], sum[1] + sum[3]};

@@ -100,6 +100,18 @@ TEST(Relaxer, WarmEndsWhereItEndsCold) {
   }
 }
 
+TEST(Relaxer, GoesOnFromWhereAnotherMethodEnded) {
+  const Scene scene = testing::membraneScene(2);
+  const System system(scene, {});
+  Relaxer relaxer;
+  RelaxationOptions options;
+  options.method = RelaxationMethod::dynamics;
+  options.max_time = 1e-9;
+  const auto dynamics = relaxer.relax(system, positionsOf(scene), options);
+  const auto result = relaxer.relax(system, dynamics.positions, {});
+  EXPECT_EQ(result.positions, relax(system, dynamics.positions, {}).positions);
+}
+
 TEST(Relaxer, TakesASceneOfOtherSprings) {
   Relaxer relaxer;
   for (const Scene& scene :

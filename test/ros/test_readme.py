@@ -27,7 +27,7 @@ class TestReadme(unittest.TestCase):
     def setUp(self):
         home = tempfile.TemporaryDirectory()
         self.addCleanup(home.cleanup)
-        self.environment = {**os.environ, 'HOME': home.name}
+        self.environment = {**os.environ, 'HOME': home.name, 'PWD': ROOT}
         if not MISSING:
             display = Display()
             self.environment.update(display.__enter__())
@@ -38,7 +38,7 @@ class TestReadme(unittest.TestCase):
     def launch(self, command):
         """In the place of what ran before."""
         self.stop()
-        self.launched = subprocess.Popen(command.split(), env=self.environment,
+        self.launched = subprocess.Popen(command.split(), cwd=ROOT, env=self.environment,
                                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         NodeClient()
 
