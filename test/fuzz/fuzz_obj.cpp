@@ -1,5 +1,5 @@
-// OBJ files of any bytes: refused, or meshes that are written and read back the same; those that are
-// topological spheres have maps without folds and texture coordinates.
+// OBJ files of any bytes: refused, or meshes that are written and read back the same; those that
+// are topological spheres have maps without folds and texture coordinates.
 #include <cmath>
 #include <cstdint>
 #include <sstream>
