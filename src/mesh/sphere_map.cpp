@@ -19,6 +19,9 @@ std::string text(double value) {
   return stream.str();
 }
 
+/// Three great circles cannot enclose half of the sphere, and come near to that only in a circle.
+constexpr double kLargestShare = 0.45;  // of the sphere
+
 void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
   if (shares.size() != mesh.faces.cols()) {
     throw std::invalid_argument("there are " + std::to_string(shares.size()) + " shares for " +
@@ -29,6 +32,13 @@ void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
       throw std::invalid_argument("share of face " + std::to_string(f) + " is " + text(shares[f]) +
                                   "; allowed: above 0 [sr]");
     }
+  }
+  Eigen::Index largest = 0;
+  const double share = shares.maxCoeff(&largest) / (4 * core::kPi);
+  if (share > kLargestShare) {
+    throw std::invalid_argument("face " + std::to_string(largest) + " has " + text(100 * share) +
+                                " % of the area; allowed: up to " + text(100 * kLargestShare) +
+                                " %, as a triangle on the sphere has less than half of it");
   }
 }
 

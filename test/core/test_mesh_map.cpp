@@ -187,6 +187,8 @@ TEST(SphereMap, RefusesFaultyArguments) {
   const Eigen::VectorXd shares = sharesOf(mesh);
   EXPECT_THROW(sphereMap(mesh, shares.head(5)), std::invalid_argument);
   EXPECT_THROW(sphereMap(mesh, -shares), std::invalid_argument);
+  EXPECT_THROW(sphereMap(testing::tetrahedron(), faceShares(Eigen::Vector4d(1, 1, 1, 3))),
+               std::invalid_argument);
   EXPECT_THROW(sphereMap(mesh, shares, mesh.vertices.leftCols(5)), std::invalid_argument);
   EXPECT_THROW(sphereMap(mesh, shares, Points::Zero(3, mesh.vertices.cols())),
                std::invalid_argument);

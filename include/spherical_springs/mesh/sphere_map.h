@@ -27,7 +27,7 @@ struct MapOptions {
 /// One unit vector a vertex: a map of the mesh to the sphere on which every face is oriented as in
 /// the mesh and whose faces cover the sphere once, with areas as near to `shares` as can be found.
 /// @throw std::invalid_argument where `requireTopologicalSphere` does, or for shares that are not
-/// one a face, positive and finite, or for options outside their range.
+/// one a face, positive and at most 45 % of the sphere, or for options outside their range.
 Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
                  const MapOptions& options = {});
 
