@@ -212,7 +212,9 @@ TEST_P(StepKernelsOf, AreTheConditionsAtAnySize) {
       for (const StepKernels* kernels : stepKernelsHere()) {
         bench_.run(*kernels);
         bench_.check(2e-14);
-        if (size < 0.3 && size > 1e-5) EXPECT_TRUE(bench_.hard.empty());
+        if (size < 0.3 && size > 1e-5) {
+          EXPECT_TRUE(bench_.hard.empty());
+        }
       }
     }
   }
