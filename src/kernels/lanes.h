@@ -61,6 +61,20 @@ inline Lanes squareRoot(const Lanes& x) {
   return result;
 }
 
+[[gnu::always_inline]] inline Lanes load(const double* values) {
+  Lanes result;
+  __builtin_memcpy(&result, values, sizeof(result));
+  return result;
+}
+
+[[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) {
+  return mask ? a : b;
+}
+[[gnu::always_inline]] inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline Lanes absolute(const Lanes& x) { return select(x < 0, -x, x); }
+[[gnu::always_inline]] inline Lanes select0(const LaneMask& mask, const Lanes& a) {
+  return mask ? a : Lanes{};
+}
 inline bool any(const LaneMask& mask) {
 #if defined(__AVX__) && !defined(__AVX512F__)
   return __builtin_ia32_movmskpd256(Four(mask)) != 0;
@@ -84,6 +98,18 @@ inline Lanes polynomial(const double (&coefficients)[N], const Lanes& x) {
   return result;
 }
 
+/// Horner's scheme for even and odd powers apart, which halves the wait.
+template <std::size_t N>
+[[gnu::always_inline]] inline Lanes polynomialByParity(const double (&coefficients)[N],
+                                                       const Lanes& x) {
+  constexpr std::size_t kLastEven = (N - 1) & ~std::size_t(1), kLastOdd = (N - 2) | 1;
+  const Lanes square = x * x;
+  Lanes even = coefficients[kLastEven] - Lanes{}, odd = coefficients[kLastOdd] - Lanes{};
+  for (std::size_t i = kLastEven; i >= 2; i -= 2) even = coefficients[i - 2] + square * even;
+  for (std::size_t i = kLastOdd; i >= 3; i -= 2) odd = coefficients[i - 2] + square * odd;
+  return even + x * odd;
+}
+
 struct Lanes3 {
   Lanes x, y, z;
 };
@@ -100,6 +126,12 @@ inline Lanes dot(const Lanes3& a, const Lanes3& b) { return a.x * b.x + a.y * b.
 inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+
+[[gnu::always_inline]] inline Lanes3 select(const LaneMask& mask, const Lanes3& a,
+                                            const Lanes3& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+inline Lanes3 negative(const Lanes3& a) { return {-a.x, -a.y, -a.z}; }
 
 /// asin(sqrt(h)) / sqrt(h) for h up to 1/4, to 2e-17; a Chebyshev interpolant.
 inline Lanes arcsineRatio(const Lanes& h) {
@@ -134,6 +166,25 @@ inline Lanes arctangentRatio(const Lanes& square) {
                                       0.041775850326747944,
                                       -0.027302779603074177,
                                       0.010030841489968486};
+  return polynomial(kCoefficients, square);
+}
+
+/// theta / sin(theta) for sin^2(theta / 2) up to 1/64, to 2e-17; a Chebyshev interpolant.
+[[gnu::always_inline]] inline Lanes overSineRatio(const Lanes& h) {
+  constexpr double kCoefficients[] = {1.0,
+                                      0.6666666666666083,
+                                      0.5333333333930259,
+                                      0.45714283425600294,
+                                      0.40635338010299754,
+                                      0.3690184998994978,
+                                      0.35895485532882426};
+  return polynomialByParity(kCoefficients, h);
+}
+
+/// atan(u) / u for squares of u up to 2e-4, to 4e-18; a Chebyshev interpolant.
+[[gnu::always_inline]] inline Lanes smallArctangentRatio(const Lanes& square) {
+  constexpr double kCoefficients[] = {1.0, -0.33333333333303766, 0.19999999327995524,
+                                      -0.14280826606559252};
   return polynomial(kCoefficients, square);
 }
 
