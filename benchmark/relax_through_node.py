@@ -4,21 +4,16 @@
 For each scene file (relaxation_benchmark --levels 5 --write-scene FILE makes one): from the start,
 and again from the end after every rest angle has changed by up to a hundredth.
 """
-import argparse
 import json
 import os
 import random
 import statistics
-import sys
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                os.pardir, "scripts", "demo_parts"))
-
-from node import launched  # noqa: E402
-from spherical_springs.msg import AngleSpring  # noqa: E402
-from spherical_springs.srv import LoadScene, Relax, SetSprings  # noqa: E402
-from std_srvs.srv import Trigger  # noqa: E402
+from node_table import parser_of, print_table
+from spherical_springs.msg import AngleSpring
+from spherical_springs.srv import LoadScene, Relax, SetSprings
+from std_srvs.srv import Trigger
 
 COLUMNS = ("particles", "from the start [s]", "the node's own word [s]", "iterations",
            "after small changes [s]", "iterations", "share", "message")
@@ -41,20 +36,20 @@ def changed_springs(springs, seed):
     return ids, messages
 
 
-def measure(node, path, runs, tolerance):
+def measure(node, path, arguments):
     """A row of the table."""
     with open(path) as file:
         scene = json.load(file)
     node.call("load_scene", LoadScene, path=os.path.basename(path))
     cold = []
-    for _ in range(runs):
+    for _ in range(arguments.runs):
         node.call("reset", Trigger)
-        cold.append(timed_relax(node, tolerance))
+        cold.append(timed_relax(node, arguments.tolerance))
     warm = []
-    for seed in range(runs):
+    for seed in range(arguments.runs):
         ids, springs = changed_springs(scene["angle_springs"], seed)
         node.call("set_springs", SetSprings, angle_spring_ids=ids, angle_springs=springs)
-        warm.append(timed_relax(node, tolerance))
+        warm.append(timed_relax(node, arguments.tolerance))
     cold_seconds, warm_seconds = (statistics.median(seconds for seconds, _ in measured)
                                   for measured in (cold, warm))
     own = statistics.median(response.wall_time for _, response in cold)
@@ -63,28 +58,10 @@ def measure(node, path, runs, tolerance):
             warm[-1][1].message)
 
 
-def print_row(cells):
-    print("| " + " | ".join(map(str, cells)) + " |", flush=True)
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scenes", nargs="+", help="scene files, all in one directory")
-    parser.add_argument("--runs", type=int, default=5, help="of which the median is taken")
-    parser.add_argument("--threads", type=int, default=0, help="of the node; 0: all cores")
+    parser = parser_of(__doc__)
     parser.add_argument("--tolerance", type=float, default=1e-9, help="largest torque left [N m]")
-    parser.add_argument("--log", default=os.devnull, help="where the node's output goes")
-    arguments = parser.parse_args()
-    directories = {os.path.dirname(os.path.abspath(path)) for path in arguments.scenes}
-    if len(directories) > 1:
-        parser.error("the scene files are in %d directories; allowed: one" % len(directories))
-    with launched("spherical_springs.launch", "running:=false",
-                  "threads:=%d" % arguments.threads, "scene_directory:=" + directories.pop(),
-                  log=arguments.log) as node:
-        print_row(COLUMNS)
-        print_row(["---"] * len(COLUMNS))
-        for path in arguments.scenes:
-            print_row(measure(node, path, arguments.runs, arguments.tolerance))
+    print_table(parser, COLUMNS, measure)
 
 
 if __name__ == "__main__":

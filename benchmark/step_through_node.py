@@ -5,23 +5,18 @@ For each scene file (stepping_benchmark --write-scene FILE LEVEL makes one): ~lo
 ~get_scene, ~save_scene, ~add_springs of all its springs again, and the share of a core that
 publishing ~poses at 100 Hz takes. Seconds, but for ~step.
 """
-import argparse
 import os
 import statistics
-import sys
 import time
 import xmlrpc.client
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                os.pardir, "scripts", "demo_parts"))
-
-import rosgraph  # noqa: E402
-import rospy  # noqa: E402
-from geometry_msgs.msg import PoseArray  # noqa: E402
-from node import NAME, launched  # noqa: E402
-from spherical_springs.srv import (AddParticles, AddSprings, GetScene, LoadScene,  # noqa: E402
+import rosgraph
+import rospy
+from geometry_msgs.msg import PoseArray
+from node_table import NAME, parser_of, print_table
+from spherical_springs.srv import (AddParticles, AddSprings, GetScene, LoadScene,
                                    SaveScene, Step)
-from std_srvs.srv import Trigger  # noqa: E402
+from std_srvs.srv import Trigger
 
 COLUMNS = ("particles", "springs", "~step [ns a spring]", "~load_scene", "~save_scene",
            "~get_scene", "~add_springs", "~poses at 100 Hz [share of a core]")
@@ -63,14 +58,14 @@ def poses_share(seconds):
     return share
 
 
-def measure(node, path, seconds, runs):
+def measure(node, path, arguments):
     """A row of the table."""
     load, _ = timed(node.call, "load_scene", LoadScene, path=os.path.basename(path))
     get, scene = timed(node.call, "get_scene", GetScene)
     springs = len(scene.angle_springs) + len(scene.solid_angle_springs)
-    step = step_time(node, springs, seconds, runs)
+    step = step_time(node, springs, arguments.seconds, arguments.runs)
     save, _ = timed(node.call, "save_scene", SaveScene, path=FRESH)
-    share = poses_share(seconds)
+    share = poses_share(arguments.seconds)
     node.call("clear", Trigger)
     ids = node.call("add_particles", AddParticles, particles=scene.particles).ids
     new_ids = dict(zip(scene.particle_ids, ids))
@@ -82,28 +77,10 @@ def measure(node, path, seconds, runs):
             "%.3g" % get, "%.3g" % add, "%.3f" % share)
 
 
-def print_row(cells):
-    print("| " + " | ".join(map(str, cells)) + " |", flush=True)
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("scenes", nargs="+", help="scene files, all in one directory")
-    parser.add_argument("--runs", type=int, default=5, help="of which the median is taken")
+    parser = parser_of(__doc__)
     parser.add_argument("--seconds", type=float, default=1, help="of a run")
-    parser.add_argument("--threads", type=int, default=0, help="of the node; 0: all cores")
-    parser.add_argument("--log", default=os.devnull, help="where the node's output goes")
-    arguments = parser.parse_args()
-    directories = {os.path.dirname(os.path.abspath(path)) for path in arguments.scenes}
-    if len(directories) > 1:
-        parser.error("the scene files are in %d directories; allowed: one" % len(directories))
-    with launched("spherical_springs.launch", "running:=false", "integrator:=euler",
-                  "publish_rate:=100", "threads:=%d" % arguments.threads,
-                  "scene_directory:=" + directories.pop(), log=arguments.log) as node:
-        print_row(COLUMNS)
-        print_row(["---"] * len(COLUMNS))
-        for path in arguments.scenes:
-            print_row(measure(node, path, arguments.seconds, arguments.runs))
+    print_table(parser, COLUMNS, measure, "integrator:=euler", "publish_rate:=100")
 
 
 if __name__ == "__main__":

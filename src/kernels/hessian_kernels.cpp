@@ -1,5 +1,7 @@
 #include "hessian_kernels.h"
 
+#include "instruction_set.h"
+
 namespace spherical_springs::core {
 
 extern const HessianKernels kPlainHessianKernels;
@@ -9,10 +11,8 @@ extern const HessianKernels kAvx2HessianKernels, kAvx512HessianKernels;
 
 const HessianKernels& hessianKernels() {
 #ifdef SPHERICAL_SPRINGS_X86
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-    return kAvx512HessianKernels;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kAvx2HessianKernels;
+  if (hasAvx512()) return kAvx512HessianKernels;
+  if (hasAvx2()) return kAvx2HessianKernels;
 #endif
   return kPlainHessianKernels;
 }

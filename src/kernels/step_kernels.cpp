@@ -1,5 +1,7 @@
 #include "step_kernels.h"
 
+#include "instruction_set.h"
+
 namespace spherical_springs::core {
 
 extern const StepKernels kPlainStepKernels;
@@ -9,10 +11,8 @@ extern const StepKernels kAvx2StepKernels, kAvx512StepKernels;
 
 const StepKernels& stepKernels() {
 #ifdef SPHERICAL_SPRINGS_X86
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-    return kAvx512StepKernels;
-  }
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kAvx2StepKernels;
+  if (hasAvx512()) return kAvx512StepKernels;
+  if (hasAvx2()) return kAvx2StepKernels;
 #endif
   return kPlainStepKernels;
 }

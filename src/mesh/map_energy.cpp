@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../minimisation/curve_order.h"
+#include "../curve_order.h"
 #include "../parallel.h"
 #include "coverage.h"
 #include "spherical_springs/springs/solid_angle_spring.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../curve_order.h"
 #include "../kernels/hessian_kernels.h"
-#include "curve_order.h"
 
 namespace spherical_springs::core {
 

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "particle_order.h"
+#include "../curve_order.h"
 
 namespace spherical_springs::core {
 
@@ -221,7 +221,7 @@ class Layout::Builder {
   std::uint32_t row_count_ = 0;
 };
 
-Layout::Layout(const System& system, const Points& positions) : order_(particleOrder(positions)) {
+Layout::Layout(const System& system, const Points& positions) : order_(curveOrder(positions)) {
   std::vector<std::uint32_t> places(order_.size());
   for (std::uint32_t i = 0; i < places.size(); ++i) places[order_[i]] = i;
   Builder(*this, system, std::move(places)).build();

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kernels/instruction_set.h"
 #include "kernels/step_kernels.h"
 
 namespace spherical_springs::core {
@@ -18,12 +19,8 @@ namespace testing {
 inline std::vector<const StepKernels*> stepKernelsHere() {
   std::vector<const StepKernels*> kernels = {&kPlainStepKernels};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    kernels.push_back(&kAvx2StepKernels);
-  }
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-    kernels.push_back(&kAvx512StepKernels);
-  }
+  if (hasAvx2()) kernels.push_back(&kAvx2StepKernels);
+  if (hasAvx512()) kernels.push_back(&kAvx512StepKernels);
 #endif
   return kernels;
 }

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <set>
 
+#include "curve_order.h"
 #include "minimisation/block_matrix.h"
-#include "minimisation/curve_order.h"
 #include "relaxation_scenes.h"
 
 namespace spherical_springs::core {

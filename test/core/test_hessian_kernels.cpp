@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "kernels/hessian_kernels.h"
+#include "kernels/instruction_set.h"
 #include "minimisation/tangent_energy.h"
 #include "scenes.h"
 
@@ -23,12 +24,8 @@ using testing::Random;
 std::vector<HessianKernels> kernelsHere() {
   std::vector<HessianKernels> kernels = {kPlainHessianKernels};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-    kernels.push_back(kAvx2HessianKernels);
-  }
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-    kernels.push_back(kAvx512HessianKernels);
-  }
+  if (hasAvx2()) kernels.push_back(kAvx2HessianKernels);
+  if (hasAvx512()) kernels.push_back(kAvx512HessianKernels);
 #endif
   return kernels;
 }

@@ -7,8 +7,8 @@
 
 namespace spherical_springs::core {
 
-/// The points numbered along a space-filling curve, so that neighbours on the sphere are mostly
-/// neighbours in number: their indices in that order.
+/// The points along a space-filling curve, so that neighbours on the sphere are mostly neighbours
+/// in the order: their indices. It depends on the indices only where points coincide.
 std::vector<std::uint32_t> curveOrder(const Points& points);
 
 }  // namespace spherical_springs::core

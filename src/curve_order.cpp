@@ -1,4 +1,4 @@
-#include "particle_order.h"
+#include "curve_order.h"
 
 #include <algorithm>
 #include <tuple>
@@ -29,22 +29,22 @@ std::uint64_t mortonCode(const Vector3& p) {
 
 }  // namespace
 
-std::vector<std::uint32_t> particleOrder(const Points& positions) {
+std::vector<std::uint32_t> curveOrder(const Points& points) {
   struct Key {
     std::uint64_t code;
-    std::uint32_t particle;
+    std::uint32_t index;
   };
-  std::vector<Key> keys(positions.cols());
-  for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = {mortonCode(positions.col(i)), i};
+  std::vector<Key> keys(points.cols());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) keys[i] = {mortonCode(points.col(i)), i};
   const auto tie = [&](const Key& key) {
-    const auto p = positions.col(key.particle);
-    return std::make_tuple(p.x(), p.y(), p.z(), key.particle);
+    const auto p = points.col(key.index);
+    return std::make_tuple(p.x(), p.y(), p.z(), key.index);
   };
   std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& b) {
     return a.code != b.code ? a.code < b.code : tie(a) < tie(b);
   });
   std::vector<std::uint32_t> order(keys.size());
-  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& k) { return k.particle; });
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& k) { return k.index; });
   return order;
 }
 
