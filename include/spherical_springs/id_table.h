@@ -22,9 +22,7 @@ class IdTable {
 
   /// Index of an id among the items, or nothing when there is none.
   std::optional<std::size_t> find(std::uint32_t id) const {
-    if (ids_.size() == next_id_) {
-      return id < next_id_ ? std::optional<std::size_t>(id) : std::nullopt;
-    }
+    if (id < ids_.size() && ids_[id] == id) return id;  // none below it is missing
     const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
     if (found == ids_.end() || *found != id) return std::nullopt;
     return static_cast<std::size_t>(found - ids_.begin());

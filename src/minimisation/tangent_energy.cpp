@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../buckets.h"
 #include "../curve_order.h"
 #include "../kernels/hessian_kernels.h"
 
@@ -30,8 +31,8 @@ void TangentEnergy::number(const System& system, const Points& positions) {
 
 /// Which free particles, by number, springs join.
 Graph TangentEnergy::freeGraph(const System& system, std::size_t free) const {
-  std::vector<std::uint32_t> first(free + 1, 0);
-  const auto forEachPair = [&](const auto& visit) {
+  auto all = dealtOut<std::uint32_t>(free, [&](const auto& visit) {
+    for (std::uint32_t i = 0; i < free; ++i) visit(i, i);
     forEachKind([&](auto kind) {
       for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
         for (const std::uint32_t i : spring.particles) {
@@ -41,16 +42,10 @@ Graph TangentEnergy::freeGraph(const System& system, std::size_t free) const {
         }
       }
     });
-  };
-  forEachPair([&](std::uint32_t i, std::uint32_t) { ++first[i + 1]; });
-  for (std::size_t i = 0; i < free; ++i) first[i + 1] += first[i] + 1;
-  std::vector<std::uint32_t> all(first.back()), next(first.begin(), first.end() - 1);
-  for (std::uint32_t i = 0; i < free; ++i) all[next[i]++] = i;
-  forEachPair([&](std::uint32_t i, std::uint32_t j) { all[next[i]++] = j; });
-
+  });
   std::vector<std::uint32_t> kept(free);
   parallelFor(free, threads_, [&](std::ptrdiff_t i) {
-    const auto begin = all.begin() + first[i], end = all.begin() + first[i + 1];
+    const auto begin = all.begin(i), end = all.end(i);
     std::sort(begin, end);
     kept[i] = static_cast<std::uint32_t>(std::unique(begin, end) - begin);
   });
@@ -59,7 +54,7 @@ Graph TangentEnergy::freeGraph(const System& system, std::size_t free) const {
   for (std::size_t i = 0; i < free; ++i) graph.first[i + 1] = graph.first[i] + kept[i];
   graph.neighbours.resize(graph.first.back());
   parallelFor(free, threads_, [&](std::ptrdiff_t i) {
-    std::copy_n(all.begin() + first[i], kept[i], graph.neighbours.begin() + graph.first[i]);
+    std::copy_n(all.begin(i), kept[i], graph.neighbours.begin() + graph.first[i]);
   });
   return graph;
 }

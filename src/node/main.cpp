@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <ros/ros.h>
 
 #include <csignal>
@@ -52,6 +53,10 @@ void run() {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_springs");
+#ifdef M_ARENA_MAX
+  // Each thread that calls come in on would keep the memory of the largest for itself.
+  mallopt(M_ARENA_MAX, 1);
+#endif
   // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it

@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "../buckets.h"
+
 namespace spherical_springs::core {
 namespace {
 
@@ -13,30 +15,43 @@ double widthOf(const AngleSpring&) { return 0; }
 double widthOf(const SolidAngleSpring&) { return 0; }
 double widthOf(const OrientedAngleSpring& spring) { return effectiveWidth(spring); }
 
-/// Elements of one spring each, in order; turned to have the first end first where that is the
-/// same.
+/// A spring alone; turned to have the first end first where that is the same.
+template <class Spring>
+Element elementOf(const SpringList<Spring>& springs, std::uint32_t index, const Places& places) {
+  Element element;
+  element.springs[0] = index;
+  const auto begin = element.ends.begin(), end = begin + Spring::kParticles;
+  for (std::size_t i = 0; i < Spring::kParticles; ++i) {
+    element.ends[i] = places[springs[index].particles[i]];
+  }
+  if (Spring::kCorners == Spring::kParticles) {
+    std::rotate(begin, std::min_element(begin, end), end);
+  }
+  return element;
+}
+
+/// Elements of one spring each, by their ends and, where those are the same, by their springs.
 template <class Spring>
 std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Places& places) {
-  std::vector<Element> elements(springs.size());
-  for (std::uint32_t s = 0; s < springs.size(); ++s) {
-    Element& element = elements[s];
-    element.springs[0] = s;
-    const auto begin = element.ends.begin(), end = begin + Spring::kParticles;
-    for (std::size_t i = 0; i < Spring::kParticles; ++i) {
-      element.ends[i] = places[springs[s].particles[i]];
+  auto by_first_end = dealtOut<Element>(places.size(), [&](const auto& visit) {
+    for (std::uint32_t s = 0; s < springs.size(); ++s) {
+      const Element element = elementOf<Spring>(springs, s, places);
+      visit(element.ends[0], element);
     }
-    if (Spring::kCorners == Spring::kParticles) {
-      std::rotate(begin, std::min_element(begin, end), end);
-    }
-  }
+  });
   const auto key = [&](const Element& element) {
     const Spring& spring = springs[element.springs[0]];
     return std::make_tuple(spring.restValue(), spring.stiffness, widthOf(spring));
   };
-  std::sort(elements.begin(), elements.end(), [&](const Element& a, const Element& b) {
-    return a.ends != b.ends ? a.ends < b.ends : key(a) < key(b);
-  });
-  return elements;
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    std::sort(by_first_end.begin(place), by_first_end.end(place),
+              [&](const Element& a, const Element& b) {
+                if (a.ends[1] != b.ends[1]) return a.ends[1] < b.ends[1];
+                if (a.ends[2] != b.ends[2]) return a.ends[2] < b.ends[2];
+                return key(a) < key(b);
+              });
+  }
+  return std::move(by_first_end.items);
 }
 
 /// Which edges of triangles join two ends.
@@ -48,41 +63,26 @@ class EdgeTable {
   };
 
   EdgeTable(const std::vector<Element>& triangles, std::size_t place_count)
-      : first_(place_count + 1, 0), edges_(3 * triangles.size()) {
-    forEachEdge(triangles, [&](std::uint32_t first, const Edge&) { ++first_[first + 1]; });
-    for (std::size_t i = 0; i < place_count; ++i) first_[i + 1] += first_[i];
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    forEachEdge(triangles,
-                [&](std::uint32_t first, const Edge& edge) { edges_[next[first]++] = edge; });
-    for (std::size_t i = 0; i < place_count; ++i) {
-      std::stable_sort(edges_.begin() + first_[i], edges_.begin() + first_[i + 1], ByLast());
-    }
-  }
+      : by_first_(dealtOut<Edge>(place_count, [&](const auto& visit) {
+          for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+            for (std::uint8_t side = 0; side < 3; ++side) {
+              const auto [first, last] =
+                  std::minmax(triangles[t].ends[side], triangles[t].ends[(side + 1) % 3]);
+              visit(first, Edge{last, t, side});
+            }
+          }
+        })) {}
 
-  /// Those from `first` to `last`, which is above it.
-  auto find(std::uint32_t first, std::uint32_t last) const {
-    return std::equal_range(edges_.begin() + first_[first], edges_.begin() + first_[first + 1],
-                            Edge{last, 0, 0}, ByLast());
+  /// Calls `visit(edge)` for those from `first` to `last`, which is above it.
+  template <class Visitor>
+  void forEachBetween(std::uint32_t first, std::uint32_t last, const Visitor& visit) const {
+    std::for_each(by_first_.begin(first), by_first_.end(first), [&](const Edge& edge) {
+      if (edge.last == last) visit(edge);
+    });
   }
 
  private:
-  struct ByLast {
-    bool operator()(const Edge& a, const Edge& b) const { return a.last < b.last; }
-  };
-
-  template <class Visitor>
-  static void forEachEdge(const std::vector<Element>& triangles, const Visitor& visit) {
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-      for (std::uint8_t side = 0; side < 3; ++side) {
-        const auto [first, last] =
-            std::minmax(triangles[t].ends[side], triangles[t].ends[(side + 1) % 3]);
-        visit(first, Edge{last, t, side});
-      }
-    }
-  }
-
-  std::vector<std::uint32_t> first_;
-  std::vector<Edge> edges_;
+  Buckets<Edge> by_first_;
 };
 
 /// The arcs along the sides of a triangle.
@@ -102,13 +102,12 @@ std::vector<Element> giveAway(const std::vector<Element>& arcs,
   for (const Element& arc : arcs) {
     const EdgeTable::Edge* best = nullptr;
     int least = 2;
-    const auto [begin, end] = table.find(arc.ends[0], arc.ends[1]);
-    for (auto edge = begin; edge != end; ++edge) {
-      const Sides& of = sides[edge->triangle];
-      if (of.count() >= least || of.arcs[edge->side] != kNone) continue;
-      best = &*edge;
+    table.forEachBetween(arc.ends[0], arc.ends[1], [&](const EdgeTable::Edge& edge) {
+      const Sides& of = sides[edge.triangle];
+      if (of.count() >= least || of.arcs[edge.side] != kNone) return;
+      best = &edge;
       least = of.count();
-    }
+    });
     if (best != nullptr) {
       sides[best->triangle].arcs[best->side] = arc.springs[0];
     } else {

@@ -4,16 +4,15 @@
 #include <tuple>
 #include <utility>
 
+#include "../buckets.h"
 #include "../curve_order.h"
 
 namespace spherical_springs::core {
 
 namespace {
 
-/// The elements of each patch: those of patch b are at [first[b], first[b + 1]).
-struct Shares {
-  std::vector<std::uint32_t> first, elements;
-};
+/// Indices of the elements of each patch.
+using Shares = Buckets<std::uint32_t>;
 
 /// Places dealt out to patches, as evenly as can be.
 class Cut {
@@ -30,14 +29,8 @@ class Cut {
   /// `endsOf(element)`: its ends.
   template <class Item, class EndsOf>
   Shares share(const std::vector<Item>& elements, const EndsOf& endsOf) const {
-    Shares shares{std::vector<std::uint32_t>(patches_ + 1, 0), {}};
-    forEachShare(elements, endsOf, [&](std::uint32_t p, std::uint32_t) { ++shares.first[p + 1]; });
-    for (std::size_t p = 0; p < patches_; ++p) shares.first[p + 1] += shares.first[p];
-    shares.elements.resize(shares.first.back());
-    std::vector<std::uint32_t> next(shares.first.begin(), shares.first.end() - 1);
-    forEachShare(elements, endsOf,
-                 [&](std::uint32_t p, std::uint32_t e) { shares.elements[next[p]++] = e; });
-    return shares;
+    return dealtOut<std::uint32_t>(
+        patches_, [&](const auto& visit) { forEachShare(elements, endsOf, visit); });
   }
 
  private:
@@ -193,7 +186,7 @@ class Layout::Builder {
     layout_.most_elements_ = std::max(layout_.most_elements_, room);
     groups.resize(begin + group_count);
     for (std::uint32_t i = 0; i < room; ++i) {
-      const std::uint32_t e = shares[kSort].elements[first + std::min(i, count - 1)];
+      const std::uint32_t e = shares[kSort].items[first + std::min(i, count - 1)];
       auto& group = groups[begin + i % group_count];
       const std::uint32_t lane = i / group_count;
       setElement(lists[kSort][e], lane, group);
