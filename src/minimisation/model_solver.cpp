@@ -1,7 +1,7 @@
 #include "model_solver.h"
 
+#include "multifrontal_cholesky.h"
 #include "multigrid.h"
-#include "sparse_cholesky.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -50,7 +50,7 @@ bool ModelSolver::tryCholesky() {
   if (cholesky_refused_) return false;
   cholesky_refused_ = true;
   if (pattern_.rows() > kMostRows) return false;
-  auto cholesky = std::make_unique<SparseCholesky>(pattern_);
+  auto cholesky = std::make_unique<MultifrontalCholesky>(pattern_, threads_);
   if (cholesky->work() > kMostWork) return false;
   double_.preconditioner = std::move(cholesky);
   return true;
@@ -69,7 +69,7 @@ ModelMinimum ModelSolver::minimum(const TangentEnergy& energy,
     single_ = {};
   }
   const auto make = [&](const Blocks<double, 2>&) {
-    return std::make_unique<SparseCholesky>(pattern_);
+    return std::make_unique<MultifrontalCholesky>(pattern_, threads_);
   };
   return solve(double_, energy, definite, shifts, gradient, tolerance, make);
 }

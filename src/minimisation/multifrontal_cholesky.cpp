@@ -12,21 +12,35 @@ MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int thre
       fronts_(dissection_.parts.size()) {
   // Parts stand in postorder, so that a subtree is a range that ends with its root.
   const auto& parts = dissection_.parts;
+  constexpr std::size_t kNone = ~std::size_t(0);
   const std::size_t enough = pattern.rows() / 16 + 1;  // rows of a subtree
-  std::vector<std::size_t> rows(parts.size()), first(parts.size());
+  std::vector<std::size_t> rows(parts.size()), first(parts.size()), parent(parts.size(), kNone);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     rows[p] = parts[p].end - parts[p].first;
     first[p] = p;
     for (const std::uint32_t child : parts[p].children) {
       rows[p] += rows[child];
       first[p] = std::min(first[p], first[child]);
-    }
-    if (rows[p] <= enough) continue;
-    above_.push_back(p);
-    for (const std::uint32_t child : parts[p].children) {
-      if (rows[child] <= enough) subtrees_.emplace_back(first[child], child + 1);
+      parent[child] = p;
     }
   }
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (rows[p] > enough) {
+      above_.push_back(p);
+    } else if (parent[p] == kNone || rows[parent[p]] > enough) {
+      subtrees_.emplace_back(first[p], p + 1);
+    }
+  }
+}
+
+double MultifrontalCholesky::work() const {
+  double sum = 0;
+  for (const Part& part : dissection_.parts) {
+    const double own = 2. * (part.end - part.first);
+    const double rest = 2. * static_cast<double>(part.boundary.size());
+    sum += own * (own * own / 6 + own * rest / 2 + rest * rest / 2);
+  }
+  return sum;
 }
 
 std::size_t MultifrontalCholesky::positionOf(const Part& part, std::uint32_t place) {

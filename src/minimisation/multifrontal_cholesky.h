@@ -16,6 +16,9 @@ class MultifrontalCholesky : public Preconditioner<double> {
   /// `pattern` must live longer.
   MultifrontalCholesky(const BlockPattern& pattern, int threads);
 
+  /// Multiplications of one factorisation, about.
+  double work() const;
+
   bool refresh(const Blocks<double, 2>& values) override;
   void apply(const VectorOf<double>& residual, VectorOf<double>& correction) override;
 

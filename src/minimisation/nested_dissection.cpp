@@ -35,27 +35,41 @@ class Dissection {
     if (nodes.size() <= kTooSmall) return {eliminate(nodes, {})};
     const std::uint32_t region = ++regions_;
     for (const std::uint32_t i : nodes) region_[i] = region;
-    // From one end of the graph, so that levels are short.
     Nodes reached = levels(nodes.front(), region);
+    if (reached.size() < nodes.size()) return dissectPieces(nodes, region);
+    // From one end of the graph, so that levels are short.
     reached = levels(reached.back(), region);
     Halves halves = cut(reached, region);
-    if (reached.size() < nodes.size()) {  // several pieces
-      for (const std::uint32_t i : nodes) {
-        if (level_[i] == kNowhere) halves.after.push_back(i);
-      }
-      if (halves.separator.empty()) halves.before = reached;
-    }
     for (const std::uint32_t i : nodes) level_[i] = kNowhere;
-    if (halves.after.empty()) return {eliminate(nodes, {})};
+    if (halves.separator.empty()) return {eliminate(nodes, {})};
     nodes.clear();
-    Nodes children;
-    for (Nodes* half : {&halves.before, &halves.after}) {
-      if (half->empty()) continue;
-      const Nodes tops = dissect(std::move(*half));
-      children.insert(children.end(), tops.begin(), tops.end());
-    }
-    if (halves.separator.empty()) return children;
+    Nodes children = dissect(std::move(halves.before));
+    append(dissect(std::move(halves.after)), children);
     return {eliminate(halves.separator, children)};
+  }
+
+  /// What hangs together apart from the rest, and what is too small for that together.
+  Nodes dissectPieces(const Nodes& nodes, std::uint32_t region) {
+    Nodes tops, small;
+    for (const std::uint32_t i : nodes) {
+      if (region_[i] != region) continue;
+      const Nodes piece = levels(i, region);
+      for (const std::uint32_t j : piece) region_[j] = 0;
+      if (piece.size() > kTooSmall) {
+        append(dissect(piece), tops);
+        continue;
+      }
+      append(piece, small);
+      if (small.size() <= kTooSmall) continue;
+      tops.push_back(eliminate(small, {}));
+      small.clear();
+    }
+    if (!small.empty()) tops.push_back(eliminate(small, {}));
+    return tops;
+  }
+
+  static void append(const Nodes& some, Nodes& all) {
+    all.insert(all.end(), some.begin(), some.end());
   }
 
   std::uint32_t eliminate(const Nodes& nodes, const Nodes& children) {

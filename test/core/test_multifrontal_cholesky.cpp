@@ -1,6 +1,8 @@
 // Exact solutions of sparse systems along a nested dissection.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "mesh/map_energy.h"
 #include "minimisation/multifrontal_cholesky.h"
 #include "shapes.h"
@@ -58,14 +60,25 @@ TEST(NestedDissection, OrdersEveryNodeOnceAndBoundsFill) {
   EXPECT_LT(entries, 100 * seen.size());  // a band along a curve takes some 250 a row
 }
 
-TEST(NestedDissection, TakesSeveralPieces) {
-  Graph graph;  // of nodes on their own
-  graph.first.push_back(0);
-  for (std::uint32_t i = 0; i < 100; ++i) {
+TEST(NestedDissection, TakesAnyNumberOfPieces) {
+  constexpr std::uint32_t kAlone = 200'000, kChain = 1000;
+  Graph graph;
+  graph.first = {0};
+  for (std::uint32_t i = 0; i < kAlone + kChain; ++i) {
+    if (i > kAlone) graph.neighbours.push_back(i - 1);
     graph.neighbours.push_back(i);
-    graph.first.push_back(i + 1);
+    if (i >= kAlone && i + 1 < kAlone + kChain) graph.neighbours.push_back(i + 1);
+    graph.first.push_back(static_cast<std::uint32_t>(graph.neighbours.size()));
   }
-  EXPECT_EQ(nestedDissection(graph).order.size(), 100u);
+  const NestedDissection dissection = nestedDissection(graph);
+  std::vector<std::uint32_t> order = dissection.order, all(graph.size());
+  std::sort(order.begin(), order.end());
+  std::iota(all.begin(), all.end(), 0);
+  EXPECT_EQ(order, all);
+  for (const auto& part : dissection.parts) {
+    EXPECT_LE(part.end - part.first, 48);
+    EXPECT_LE(part.boundary.size(), 2);
+  }
 }
 
 TEST(MultifrontalCholesky, Solves) {

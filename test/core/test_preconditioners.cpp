@@ -7,7 +7,7 @@
 
 #include "minimisation/conjugate_gradients.h"
 #include "minimisation/multigrid.h"
-#include "minimisation/sparse_cholesky.h"
+#include "minimisation/multifrontal_cholesky.h"
 #include "relaxation_scenes.h"
 
 namespace spherical_springs::core {
@@ -147,10 +147,12 @@ TEST(Multigrid, GoesOnServingAfterARefresh) {
   EXPECT_LE(after.iterations, 2 * before.iterations);
 }
 
-TEST(SparseCholesky, IsTheInverse) {
-  for (const Scene& scene : scenes()) {
+TEST(MultifrontalCholesky, IsTheInverse) {
+  std::vector<Scene> all = scenes();
+  all.push_back(testing::randomScene(3, 400, 200));  // of many pieces
+  for (const Scene& scene : all) {
     const Matrix<double> matrix(scene, Curvature::definite, 1e-2);
-    SparseCholesky cholesky(matrix.pattern());
+    MultifrontalCholesky cholesky(matrix.pattern(), 1);
     ASSERT_TRUE(cholesky.refresh(matrix.values));
     const Eigen::VectorXd right = randomVector(matrix.size(), 2);
     Eigen::VectorXd solution(matrix.size());
@@ -161,9 +163,9 @@ TEST(SparseCholesky, IsTheInverse) {
   }
 }
 
-TEST(SparseCholesky, FindsAMatrixThatIsNotDefinite) {
+TEST(MultifrontalCholesky, FindsAMatrixThatIsNotDefinite) {
   const Matrix<double> matrix(testing::membraneScene(2), Curvature::exact, 0);
-  SparseCholesky cholesky(matrix.pattern());
+  MultifrontalCholesky cholesky(matrix.pattern(), 1);
   EXPECT_FALSE(cholesky.refresh(matrix.values));
   EXPECT_TRUE(cholesky.refresh(
       Matrix<double>(testing::membraneScene(2), Curvature::definite, 1e-3).values));
