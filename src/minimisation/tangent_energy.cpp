@@ -71,17 +71,14 @@ void TangentEnergy::compile(const System& system) {
     for (const std::uint32_t i : spring.particles) least = std::min(least, numbers_[i]);
     return least;
   };
-  std::vector<std::uint32_t> first(particles_.size() + 1, 0);
-  for (const Spring& spring : springs) ++first[lowest(spring) + 1];
-  for (std::size_t n = 0; n < particles_.size(); ++n) first[n + 1] += first[n];
+  auto by_lowest = dealtOut<std::uint32_t>(particles_.size(), [&](const auto& visit) {
+    for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowest(springs[s]), s);
+  });
   compiled.first.resize(blocks + 1);
   for (std::size_t b = 0; b <= blocks; ++b) {
-    compiled.first[b] = first[pattern_.order.first_node[b]];
+    compiled.first[b] = by_lowest.first[pattern_.order.first_node[b]];
   }
-  compiled.sources.resize(springs.size());
-  for (std::uint32_t s = 0; s < springs.size(); ++s) {
-    compiled.sources[first[lowest(springs[s])]++] = s;
-  }
+  compiled.sources = std::move(by_lowest.items);
   compiled.springs.resize(springs.size());
   compiled.places.resize(springs.size());
   parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
