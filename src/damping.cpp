@@ -66,24 +66,18 @@ double Damping::fastestRate(const std::vector<Vector3>& gradients) const {
   return rows.size() > 0 ? rows.maxCoeff() : 0;
 }
 
-namespace {
-
-/// How many terms of exp(x) it takes until they are below rounding.
-int termsFor(double x) {
+int Damping::seriesTerms(double decays) {
   constexpr double kNegligible = 1e-18;
   int terms = 1;
-  for (double term = x; term > kNegligible; term *= x / terms) ++terms;
+  for (double next = decays * decays / 2; next > kNegligible; next *= decays / (terms + 1)) ++terms;
   return terms;
 }
 
-}  // namespace
-
 double Damping::kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
                      Points& velocities) const {
-  constexpr double kFast = 1;  // decays within the duration
   const double decays = fastestRate(gradients) * std::abs(duration);
-  if (decays <= kFast) {
-    return kickBySeries(gradients, torques, duration, termsFor(decays), velocities);
+  if (takenBySeries(decays)) {
+    return kickBySeries(gradients, torques, duration, seriesTerms(decays), velocities);
   }
   double taken = sweep(gradients, duration / 2, velocities);
   velocities += duration * torques * inverse_masses_.asDiagonal();

@@ -6,7 +6,6 @@
 
 #include "integrators/blocked_splitting.h"
 #include "integrators/implicit_euler.h"
-#include "integrators/splitting.h"
 
 namespace spherical_springs::core {
 
@@ -33,11 +32,7 @@ std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const System> system,
   if (method == IntegrationMethod::implicit_euler) {
     return std::make_unique<ImplicitEuler>(std::move(system), time_step);
   }
-  const SplittingScheme& scheme = splittingScheme(method);
-  if (system->damping().hasDampers()) {
-    return std::make_unique<SplittingIntegrator>(std::move(system), scheme, time_step);
-  }
-  return std::make_unique<BlockedSplitting>(system, scheme, time_step);
+  return std::make_unique<BlockedSplitting>(system, splittingScheme(method), time_step);
 }
 
 }  // namespace spherical_springs::core

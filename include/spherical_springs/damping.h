@@ -30,6 +30,7 @@ class Damping {
   bool none() const { return !viscous_any_ && dampers_.empty(); }
   bool hasViscous() const { return viscous_any_; }
   bool hasDampers() const { return !dampers_.empty(); }
+  double viscous(Eigen::Index particle) const { return viscous_[particle]; }  ///< [N m s/rad]
 
   /// What viscous damping does to one particle over a kick, exactly.
   struct ViscousFlow {
@@ -43,6 +44,12 @@ class Damping {
 
   /// A bound of the fastest decay [1/s], by Gershgorin's circles of M^-1 D.
   double fastestRate(const std::vector<Vector3>& gradients) const;
+
+  /// Whether damping is so slow that it decays by `decays` at most is taken by Taylor's series.
+  static bool takenBySeries(double decays) { return decays <= 1; }
+
+  /// How many terms beyond the constant that takes until all others are below rounding.
+  static int seriesTerms(double decays);
 
   /// Velocities after `duration` [s], which may be negative, under `torques` [N m] and the damping,
   /// at the positions of `gradients`. Where the damping is slow against the duration this is the

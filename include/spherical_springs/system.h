@@ -46,6 +46,7 @@ class System {
   const Eigen::VectorXd& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
   const Damping& damping() const { return damping_; }
+  SpringDamping springDamping() const { return options_.spring_damping; }
   /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
   bool conservesAngularMomentum() const;
   double largestStiffness() const;

@@ -7,8 +7,7 @@
 
 namespace spherical_springs::core {
 
-/// A splitting scheme, for systems without damped springs: block by block, several springs at a
-/// time.
+/// A splitting scheme block by block, several springs at a time.
 class BlockedSplitting : public Integrator {
  public:
   BlockedSplitting(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
@@ -18,10 +17,12 @@ class BlockedSplitting : public Integrator {
   void give(State& state) const override;
 
  private:
-  void stepOnce(double next_drift);
+  void advanceByRates(std::uint64_t steps);
+  void stepOnce(const SplittingScheme& scheme, double next_drift);
 
   const SplittingScheme& scheme_;
   double time_step_;
+  bool depends_on_rates_;  // of damped springs
   Motion motion_;
   Progress progress_;
 };

@@ -29,11 +29,10 @@ const SplittingScheme& splittingScheme(IntegrationMethod method) {
 
 // Above second order some kicks go back in time, and damping with them: where it decays within a
 // step that would amplify it without bound. A verlet step is stable there.
-const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, const Damping& damping,
-                                          const std::vector<Vector3>& gradients, double time_step) {
-  if (scheme.order <= 2 || damping.none()) return scheme;
-  const bool resolved = damping.fastestRate(gradients) * time_step <= 1;
-  return resolved ? scheme : splittingScheme(IntegrationMethod::verlet);
+const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, double fastest_rate,
+                                          double time_step) {
+  if (scheme.order <= 2 || fastest_rate * time_step <= 1) return scheme;
+  return splittingScheme(IntegrationMethod::verlet);
 }
 
 SplittingIntegrator::SplittingIntegrator(std::shared_ptr<const System> system,
@@ -43,7 +42,8 @@ SplittingIntegrator::SplittingIntegrator(std::shared_ptr<const System> system,
 const SplittingScheme& SplittingIntegrator::schemeFor(const State& state) {
   if (scheme_.order <= 2) return scheme_;
   system_->evaluate(state.positions, workspace_);
-  return schemeUnderDamping(scheme_, system_->damping(), workspace_.end_gradients, time_step_);
+  const double rate = system_->damping().fastestRate(workspace_.end_gradients);
+  return schemeUnderDamping(scheme_, rate, time_step_);
 }
 
 void SplittingIntegrator::stepOnce(State& state) {

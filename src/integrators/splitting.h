@@ -19,12 +19,13 @@ struct SplittingScheme {
 
 const SplittingScheme& splittingScheme(IntegrationMethod method);
 
-/// The scheme to take in place of `scheme` where damping with `gradients`, as `Damping` has them,
-/// decays within a step.
-const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, const Damping& damping,
-                                          const std::vector<Vector3>& gradients, double time_step);
+/// The scheme to take in place of `scheme` where damping of up to `fastest_rate` [1/s] decays
+/// within a step.
+const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, double fastest_rate,
+                                          double time_step);
 
-/// A splitting scheme for every system, one spring at a time.
+/// A splitting scheme one spring at a time, by the springs' own formulas: what the faster one is
+/// held to.
 class SplittingIntegrator : public PlainIntegrator {
  public:
   SplittingIntegrator(std::shared_ptr<const System> system, const SplittingScheme& scheme,

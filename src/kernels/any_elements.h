@@ -81,8 +81,15 @@ inline void addArc(const AnyArc& arc, const LaneMask& hard, double* forces,
   addRows(select(arc.is_far, on_a, negative(on_a)), forces, rows_b);
 }
 
-// At a the gradient is beta (b x c) - alpha (b + c), but for what is along a; and b x c is
-// a x (c - b) + area.
+/// The force at a corner p that is -factor times the gradient of the triple product, but for what
+/// is along p: at a that is b x c, which is a x (c - b) + area.
+[[gnu::always_inline]] inline Lanes3 tripleProductForce(const Lanes& factor, const Lanes3& p,
+                                                        const Lanes3& opposite,
+                                                        const TriangleEdges& e) {
+  return negative(factor * (cross(p, opposite) + e.area));
+}
+
+// At a the gradient is beta (b x c) - alpha (b + c), but for what is along a.
 template <int kArcs>
 LaneMask addAnyTriangles(const Batch<Triangles<kArcs>>& batch, const double* positions,
                          double* forces) {
@@ -98,10 +105,9 @@ LaneMask addAnyTriangles(const Batch<Triangles<kArcs>>& batch, const double* pos
   if (kArcs > 0) addArc(first_arc, hard, forces, batch.rows(0), batch.rows(1));
   if (kArcs > 1) addArc(second_arc, hard, forces, batch.rows(1), batch.rows(2));
   const Lanes alpha = select0(~hard, t.alpha), beta = select0(~hard, t.beta);
-  const Lanes3 area = beta * e.area;
-  addRows(alpha * (e.ab - e.ca) - beta * cross(a, e.bc) - area, forces, batch.rows(0));
-  addRows(alpha * (e.bc - e.ab) - beta * cross(b, e.ca) - area, forces, batch.rows(1));
-  addRows(alpha * (e.ca - e.bc) - beta * cross(c, e.ab) - area, forces, batch.rows(2));
+  addRows(alpha * (e.ab - e.ca) + tripleProductForce(beta, a, e.bc, e), forces, batch.rows(0));
+  addRows(alpha * (e.bc - e.ab) + tripleProductForce(beta, b, e.ca, e), forces, batch.rows(1));
+  addRows(alpha * (e.ca - e.bc) + tripleProductForce(beta, c, e.ab, e), forces, batch.rows(2));
   return hard;
 }
 
@@ -129,8 +135,6 @@ inline LaneSign signOf(const Lanes& x) {
   return {0.125 * u * (15 - square * (10 - 3 * square)), 1.875 * rest * rest};
 }
 
-// The gradient of the triple product at a is b x c, which is a x (c - b) + area but for what is
-// along a.
 LaneMask addAny(const Batch<OrientedArcs>& batch, const double* positions, double* forces) {
   const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
                c = batch.gather(2, positions);
@@ -146,11 +150,10 @@ LaneMask addAny(const Batch<OrientedArcs>& batch, const double* positions, doubl
   const Lanes across = select0(~hard, pull * sign.slope * angle.value / width);
 
   const Lanes3 on_a = along * angle.beside;
-  const Lanes3 area = across * e.area;
-  addRows(on_a - across * cross(a, e.bc) - area, forces, batch.rows(0));
-  addRows(select(angle.is_far, on_a, negative(on_a)) - across * cross(b, e.ca) - area, forces,
-          batch.rows(1));
-  addRows(negative(across * cross(c, e.ab) + area), forces, batch.rows(2));
+  const Lanes3 on_b = select(angle.is_far, on_a, negative(on_a));
+  addRows(on_a + tripleProductForce(across, a, e.bc, e), forces, batch.rows(0));
+  addRows(on_b + tripleProductForce(across, b, e.ca, e), forces, batch.rows(1));
+  addRows(tripleProductForce(across, c, e.ab, e), forces, batch.rows(2));
   return hard;
 }
 

@@ -4,7 +4,8 @@
 
 #include <math.h>
 
-#include "lanes.h"
+#include "damping_lanes.h"
+#include "particle_lanes.h"
 #include "rows.h"
 #include "step_lanes.h"
 
@@ -12,21 +13,6 @@ namespace {
 
 using spherical_springs::core::Particles;
 using spherical_springs::core::ViscousKick;
-
-inline Lanes3 loadVelocities(const Particles& particles, std::uint32_t first) {
-  return {load(particles.velocities[0] + first), load(particles.velocities[1] + first),
-          load(particles.velocities[2] + first)};
-}
-
-inline void store(const Lanes& values, double* to) {
-  __builtin_memcpy(to, &values, sizeof(values));
-}
-
-inline void storeVelocities(const Lanes3& v, const Particles& particles, std::uint32_t first) {
-  store(v.x, particles.velocities[0] + first);
-  store(v.y, particles.velocities[1] + first);
-  store(v.z, particles.velocities[2] + first);
-}
 
 void kick(const Particles& particles, double duration) {
   for (std::uint32_t first = 0; first < particles.count; first += kLanes) {
@@ -103,6 +89,7 @@ static constexpr StepKernels kKernels = {
      addAll<ShortTriangles<2>>, addAll<NoShortWay<OrientedArcs>>},
     kick,
     viscousKick,
-    drift};
+    drift,
+    kDampingKernels};
 
 }  // namespace spherical_springs::core

@@ -16,7 +16,7 @@ template <class RowAt>
   Lanes3 result;
   for (int part = 0; part < kLanes / 4; ++part) {
     Four rows[4];
-    for (int k = 0; k < 4; ++k) rows[k] = loadFour(at(4 * part + k));
+    for (int k = 0; k < 4; ++k) rows[k] = at(4 * part + k);
     transpose(rows);
     setFour(rows[0], part, result.x);
     setFour(rows[1], part, result.y);
@@ -41,7 +41,7 @@ template <class RowAt>
 [[gnu::always_inline]] inline Lanes3 lanesFromRows(const RowAt& at) {
   Lanes3 result;
   for (int k = 0; k < kLanes; ++k) {
-    const double* const row = at(k);
+    const Four row = at(k);
     result.x[k] = row[0];
     result.y[k] = row[1];
     result.z[k] = row[2];
@@ -58,11 +58,19 @@ template <class Use>
 
 /// The rows at `offsets` [doubles].
 [[gnu::always_inline]] inline Lanes3 gatherRows(const double* rows, const std::uint32_t* offsets) {
-  return lanesFromRows([&](int k) { return rows + offsets[k]; });
+  return lanesFromRows([&](int k) { return loadFour(rows + offsets[k]); });
 }
 
 [[gnu::always_inline]] inline Lanes3 loadRows(const double* rows) {
-  return lanesFromRows([&](int k) { return rows + kRowLength * k; });
+  return lanesFromRows([&](int k) { return loadFour(rows + kRowLength * k); });
+}
+
+/// The differences of the rows at `offsets` from those at `base`.
+[[gnu::always_inline]] inline Lanes3 gatherDifferences(const double* rows,
+                                                       const std::uint32_t* offsets,
+                                                       const std::uint32_t* base) {
+  return lanesFromRows(
+      [&](int k) { return loadFour(rows + offsets[k]) - loadFour(rows + base[k]); });
 }
 
 [[gnu::always_inline]] inline void addRows(const Lanes3& v, double* rows,

@@ -1,18 +1,13 @@
 // What a step computes, for several springs or particles at a time.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <tuple>
 
+#include "damping_kernels.h"
+#include "row.h"
+
 namespace spherical_springs::core {
-
-constexpr std::size_t kGroup = 8;      ///< so many springs or particles lie side by side
-constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
-
-struct alignas(kRowLength * sizeof(double)) Row {
-  double values[kRowLength];
-};
 
 /// Elements that a kernel takes together: arcs, or triangles with the arcs along their first edges.
 /// The last group of a list is filled up with elements of no stiffness.
@@ -44,16 +39,6 @@ template <class Group>
 using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
                                       const double* positions, double* forces, std::uint32_t* hard);
 
-/// Particles side by side, a multiple of kGroup.
-struct Particles {
-  const double* positions;  ///< rows
-  double* moved;            ///< rows; may be those of `positions`
-  double* velocities[3];    ///< of each component, an array
-  const double* forces;     ///< rows
-  const double* inverse_masses;
-  std::uint32_t count;
-};
-
 /// What a kick over some time does to particles with viscous damping, as Damping::ViscousFlow has
 /// it: arrays over particles.
 struct ViscousKick {
@@ -78,6 +63,7 @@ struct StepKernels {
   KickKernel kick;
   ViscousKickKernel viscous_kick;
   DriftKernel drift;
+  DampingKernels damping;  ///< of springs
 };
 
 /// Those for the widest instructions that this processor has.

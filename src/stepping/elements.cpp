@@ -30,18 +30,21 @@ Element elementOf(const SpringList<Spring>& springs, std::uint32_t index, const 
   return element;
 }
 
-/// Elements of one spring each, by their ends and, where those are the same, by their springs.
-template <class Spring>
-std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Places& places) {
+/// Elements of one spring each, of those that are wanted, by their ends and, where those are the
+/// same, by their springs.
+template <class Spring, class Wanted>
+std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Places& places,
+                                   const Wanted& wanted) {
   auto by_first_end = dealtOut<Element>(places.size(), [&](const auto& visit) {
     for (std::uint32_t s = 0; s < springs.size(); ++s) {
+      if (!wanted(springs[s])) continue;
       const Element element = elementOf<Spring>(springs, s, places);
       visit(element.ends[0], element);
     }
   });
   const auto key = [&](const Element& element) {
     const Spring& spring = springs[element.springs[0]];
-    return std::make_tuple(spring.restValue(), spring.stiffness, widthOf(spring));
+    return std::make_tuple(spring.restValue(), spring.stiffness, widthOf(spring), spring.damping);
   };
   for (std::size_t place = 0; place < places.size(); ++place) {
     std::sort(by_first_end.begin(place), by_first_end.end(place),
@@ -133,11 +136,12 @@ Element joined(Element triangle, Sides sides) {
 }  // namespace
 
 ElementLists elementsOf(const System& system, const Places& places) {
+  const auto every = [](const auto&) { return true; };
   ElementLists lists;
   auto& arcs = lists[0];
-  arcs = sortedSprings(system.springs<AngleSpring>(), places);
-  lists[4] = sortedSprings(system.springs<OrientedAngleSpring>(), places);
-  const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places);
+  arcs = sortedSprings(system.springs<AngleSpring>(), places, every);
+  lists[4] = sortedSprings(system.springs<OrientedAngleSpring>(), places, every);
+  const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places, every);
   if (triangles.empty()) return lists;
   std::vector<Sides> sides(triangles.size());
   arcs = giveAway(arcs, triangles, places.size(), sides);
@@ -146,5 +150,15 @@ ElementLists elementsOf(const System& system, const Places& places) {
   }
   return lists;
 }
+
+template <class Spring>
+std::vector<Element> dampedElementsOf(const System& system, const Places& places) {
+  return sortedSprings(system.springs<Spring>(), places,
+                       [](const Spring& spring) { return spring.damping > 0; });
+}
+
+template std::vector<Element> dampedElementsOf<AngleSpring>(const System&, const Places&);
+template std::vector<Element> dampedElementsOf<SolidAngleSpring>(const System&, const Places&);
+template std::vector<Element> dampedElementsOf<OrientedAngleSpring>(const System&, const Places&);
 
 }  // namespace spherical_springs::core

@@ -27,4 +27,9 @@ using ElementLists = std::array<std::vector<Element>, 5>;
 /// `places`: of each particle in the order.
 ElementLists elementsOf(const System& system, const std::vector<std::uint32_t>& places);
 
+/// The springs of a kind that are damped, each an element of its own.
+template <class Spring>
+std::vector<Element> dampedElementsOf(const System& system,
+                                      const std::vector<std::uint32_t>& places);
+
 }  // namespace spherical_springs::core

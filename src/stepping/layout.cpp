@@ -4,55 +4,12 @@
 #include <tuple>
 #include <utility>
 
-#include "../buckets.h"
 #include "../curve_order.h"
+#include "cut.h"
 
 namespace spherical_springs::core {
 
 namespace {
-
-/// Indices of the elements of each patch.
-using Shares = Buckets<std::uint32_t>;
-
-/// Places dealt out to patches, as evenly as can be.
-class Cut {
- public:
-  Cut(std::size_t places, std::size_t patches)
-      : places_(places), patches_(patches), patch_of_(places) {
-    for (std::size_t b = 0; b < patches; ++b) {
-      std::fill(patch_of_.begin() + begin(b), patch_of_.begin() + begin(b + 1), b);
-    }
-  }
-  std::size_t begin(std::size_t patch) const { return places_ * patch / patches_; }
-  std::size_t patchCount() const { return patches_; }
-
-  /// `endsOf(element)`: its ends.
-  template <class Item, class EndsOf>
-  Shares share(const std::vector<Item>& elements, const EndsOf& endsOf) const {
-    return dealtOut<std::uint32_t>(
-        patches_, [&](const auto& visit) { forEachShare(elements, endsOf, visit); });
-  }
-
- private:
-  template <class Item, class EndsOf, class Visitor>
-  void forEachShare(const std::vector<Item>& elements, const EndsOf& endsOf,
-                    const Visitor& visit) const {
-    for (std::uint32_t e = 0; e < elements.size(); ++e) {
-      std::array<std::uint32_t, 3> seen{kNone, kNone, kNone};
-      std::size_t seen_count = 0;
-      for (const std::uint32_t end : endsOf(elements[e])) {
-        if (end == kNone) continue;
-        const std::uint32_t patch = patch_of_[end];
-        if (std::find(seen.begin(), seen.end(), patch) != seen.end()) continue;
-        seen[seen_count++] = patch;
-        visit(patch, e);
-      }
-    }
-  }
-
-  std::size_t places_, patches_;
-  std::vector<std::uint32_t> patch_of_;
-};
 
 /// Few enough that positions and torques stay in the cache next to the processor.
 std::size_t patchCountFor(std::size_t particles) {
@@ -77,7 +34,7 @@ class Layout::Builder {
     const ElementLists lists = elementsOf(system_, places_);
     std::array<Shares, 5> shares;
     for (std::size_t sort = 0; sort < shares.size(); ++sort) {
-      shares[sort] = cut_.share(lists[sort], [](const Element& e) { return e.ends; });
+      shares[sort] = cut_.share(lists[sort]);
     }
     reserve(shares, std::make_index_sequence<5>());
     for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
@@ -132,7 +89,7 @@ class Layout::Builder {
     const auto groupCount = [&](const Shares& of) {
       std::size_t count = 0;
       for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
-        count += Patch::roundedUp(of.first[p + 1] - of.first[p]) / kGroup;
+        count += roundedUpToGroup(of.first[p + 1] - of.first[p]) / kGroup;
       }
       return count;
     };
@@ -173,26 +130,18 @@ class Layout::Builder {
   }
   static void slacken(OrientedArcs& group, std::uint32_t lane) { group.stiffness[lane] = 0; }
 
-  /// Elements that the kernels take together lie far apart on the sphere, so that they do not wait
-  /// for each other's forces.
   template <int kSort>
-  Patch::Range fill(const ElementLists& lists, const std::array<Shares, 5>& shares,
-                    std::size_t patch) {
-    auto& groups = std::get<kSort>(layout_.groups_);
+  GroupRange fill(const ElementLists& lists, const std::array<Shares, 5>& shares,
+                  std::size_t patch) {
+    using Group = typename std::tuple_element_t<kSort, GroupLists>::value_type;
     const std::uint32_t first = shares[kSort].first[patch];
     const std::uint32_t count = shares[kSort].first[patch + 1] - first;
-    const auto begin = static_cast<std::uint32_t>(groups.size());
-    const std::uint32_t room = Patch::roundedUp(count), group_count = room / kGroup;
-    layout_.most_elements_ = std::max(layout_.most_elements_, room);
-    groups.resize(begin + group_count);
-    for (std::uint32_t i = 0; i < room; ++i) {
-      const std::uint32_t e = shares[kSort].items[first + std::min(i, count - 1)];
-      auto& group = groups[begin + i % group_count];
-      const std::uint32_t lane = i / group_count;
-      setElement(lists[kSort][e], lane, group);
-      if (i >= count) slacken(group, lane);
-    }
-    return {begin, begin + group_count};
+    return appendGroups<Group>(
+        count, std::get<kSort>(layout_.groups_),
+        [&](std::uint32_t i, Group& group, std::uint32_t lane) {
+          setElement(lists[kSort][shares[kSort].items[first + i]], lane, group);
+        },
+        [](Group& group, std::uint32_t lane) { slacken(group, lane); });
   }
 
   /// From places in the order to rows at home.
@@ -218,6 +167,13 @@ Layout::Layout(const System& system, const Points& positions) : order_(curveOrde
   std::vector<std::uint32_t> places(order_.size());
   for (std::uint32_t i = 0; i < places.size(); ++i) places[order_[i]] = i;
   Builder(*this, system, std::move(places)).build();
+}
+
+void Layout::welcomeGuests(const Patch& patch, std::vector<Row>& rows) const {
+  const std::uint32_t* const home = guests_.data() + patch.first_guest;
+  const std::uint32_t first = patch.first_row + patch.slotCount();
+  const std::uint32_t count = patch.row_count - patch.slotCount();
+  for (std::uint32_t i = 0; i < count; ++i) rows[first + i] = rows[home[i]];
 }
 
 std::size_t Layout::bytes() const {

@@ -8,6 +8,7 @@
 
 #include "../kernels/step_kernels.h"
 #include "elements.h"
+#include "groups.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
@@ -29,15 +30,9 @@ struct Patch {
   std::uint32_t first_row, row_count;         ///< of its particles, then those of others
   std::uint32_t first_guest;                  ///< of others, in the list of guests
 
-  struct Range {
-    std::uint32_t begin = 0, end = 0;
-  };
-  std::array<Range, 5> groups;  ///< of each sort
+  std::array<GroupRange, 5> groups;  ///< of each sort
 
-  std::uint32_t slotCount() const { return roundedUp(particle_count); }
-  static std::uint32_t roundedUp(std::uint32_t count) {
-    return (count + kGroup - 1) / kGroup * kGroup;
-  }
+  std::uint32_t slotCount() const { return roundedUpToGroup(particle_count); }
 };
 
 class Layout {
@@ -50,11 +45,13 @@ class Layout {
   std::uint32_t slotCount() const { return slot_count_; }
   std::uint32_t rowCount() const { return row_count_; }
   std::uint32_t largestPatch() const { return largest_patch_; }  ///< [rows]
-  std::uint32_t mostElements() const { return most_elements_; }  ///< of one sort in a patch
 
   /// Of the particle that a guest is, its row at home.
   const std::vector<std::uint32_t>& guests() const { return guests_; }
   const GroupLists& groups() const { return groups_; }
+
+  /// Copies what is at home of the particles of other patches to the rows that they have in this.
+  void welcomeGuests(const Patch& patch, std::vector<Row>& rows) const;
 
   std::size_t bytes() const;
 
@@ -63,7 +60,7 @@ class Layout {
 
   std::vector<std::uint32_t> order_;
   std::vector<Patch> patches_;
-  std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0, most_elements_ = 0;
+  std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0;
   std::vector<std::uint32_t> guests_;
   GroupLists groups_;
 };

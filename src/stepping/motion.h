@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "../kernels/step_kernels.h"
+#include "damped_kick.h"
+#include "forces.h"
 #include "layout.h"
 #include "spherical_springs/state.h"
 #include "spherical_springs/system.h"
+#include "viscous_flows.h"
 
 namespace spherical_springs::core {
 
@@ -29,49 +32,32 @@ class Motion {
   /// @return the energy that damping took out [J].
   double kickAndDrift(double kick, const Drifts& drifts);
 
-  std::size_t bytes() const;
+  /// As `Damping::fastestRate`, at the present positions; only in a scene with damped springs.
+  double fastestRate();
 
  private:
-  struct Scratch {
-    std::vector<Row> forces;
-    std::vector<std::uint32_t> hard;
-  };
-
-  /// Of the viscous damping of all particles over a kick's duration.
-  struct Viscous {
-    double duration;
-    std::vector<double> decay, gain, taken[3];
-  };
-
-  const Viscous& viscousFor(double duration);
   Particles particlesOf(const Patch& patch, const std::vector<Row>& positions,
                         std::vector<Row>& moved, const Row* forces);
-  double kickAndDriftPatch(const Patch& patch, double kick, const Viscous* viscous,
-                           const Drifts& drifts);
+  template <class Work>
+  void forEachPatch(const Work& work);
+  const Row* forcesOn(const Patch& patch);
+  double kickPatch(const Particles& particles, const Patch& patch, double kick,
+                   const ViscousFlow* viscous) const;
+  double kickUnderSpringDamping(double kick);
+  void driftPatch(Particles particles, const Drifts& drifts) const;
   void fetch(const Patch& patch) const;
-  void welcomeGuests(const Patch& patch);
-  void addForces(const Patch& patch, Scratch& scratch) const;
-  template <int kSort>
-  void addElements(const Patch& patch, Scratch& scratch) const;
-  template <int kEnds, int kSprings>
-  void addExactly(const Patch& patch, const ElementGroup<kEnds, kSprings>& group,
-                  std::uint32_t lane, Scratch& scratch) const;
-  void addExactly(const Patch& patch, const OrientedArcs& group, std::uint32_t lane,
-                  Scratch& scratch) const;
-  template <class Spring>
-  void addExactly(const Patch& patch, const Spring& spring,
-                  const std::array<std::uint32_t, Spring::kParticles>& rows,
-                  Scratch& scratch) const;
 
   std::shared_ptr<const System> system_;
   std::shared_ptr<const Layout> layout_;
   const StepKernels& kernels_;
+  Forces forces_;
   int threads_;
   std::vector<Row> positions_, moved_;
   std::array<std::vector<double>, 3> velocities_;
   std::vector<double> inverse_masses_;
-  std::vector<Viscous> viscous_;    // one a duration; only in a scene with damped particles
-  std::vector<double> dissipated_;  // likewise, one a patch
+  std::vector<double> dissipated_;           // one a patch, only in a scene with damped particles
+  ViscousFlows viscous_flows_;               // likewise
+  std::unique_ptr<DampedKick> damped_kick_;  // only in a scene with damped springs
 };
 
 }  // namespace spherical_springs::core

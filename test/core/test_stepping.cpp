@@ -47,9 +47,35 @@ std::vector<Scene> scenes() {
   return result;
 }
 
-std::shared_ptr<const System> systemOf(const Scene& scene, int threads = 1) {
+/// Two in three springs of every kind.
+Scene withDampedSprings(const Scene& scene, double damping) {
+  SpringLists springs = testing::springsOf(scene);
+  testing::Random random(9);
+  forEachKind([&](auto kind) {
+    for (auto& spring : springs.get<typename decltype(kind)::type>()) {
+      if (random.below(3) != 0) spring.damping = damping * random.between(0.5, 1);
+    }
+  });
+  return testing::sceneOf(scene.particles().items(), springs);
+}
+
+/// Slow enough for the series, and too fast for it.
+std::vector<Scene> dampedScenes() {
+  std::vector<Scene> result;
+  for (const Scene& scene : scenes()) {
+    result.push_back(withViscousDamping(scene, 0.1));
+    for (const double damping : {0.01, 1e4}) {
+      result.push_back(withDampedSprings(result.back(), damping));
+    }
+  }
+  return result;
+}
+
+std::shared_ptr<const System> systemOf(const Scene& scene, int threads = 1,
+                                       SpringDamping spring_damping = SpringDamping::relative) {
   System::Options options;
   options.threads = threads;
+  options.spring_damping = spring_damping;
   return std::make_shared<const System>(scene, options);
 }
 
@@ -95,9 +121,88 @@ TEST(Stepping, IsThatOfOneSpringAtATime) {
   }
 }
 
+class DampedStepping : public ::testing::TestWithParam<SpringDamping> {
+ protected:
+  State stepped(const Scene& scene, IntegrationMethod method, double step, int steps) const {
+    const auto integrator = makeIntegrator(systemOf(scene, 1, GetParam()), method, step);
+    return core::stepped(*integrator, scene, steps);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, DampedStepping,
+                         ::testing::Values(SpringDamping::relative, SpringDamping::own));
+
+TEST_P(DampedStepping, IsThatOfOneSpringAtATime) {
+  for (const double viscous : {0., 0.1}) {
+    for (const Scene& undamped : scenes()) {
+      const Scene scene = withDampedSprings(withViscousDamping(undamped, viscous), 0.01);
+      const auto system = systemOf(scene, 1, GetParam());
+      for (const IntegrationMethod method : kMethods) {
+        SplittingIntegrator plain(system, splittingScheme(method), 1e-3);
+        const State expected = core::stepped(plain, scene, 3);
+        for (const StepKernels* kernels : stepKernelsHere()) {
+          BlockedSplitting blocked(system, splittingScheme(method), 1e-3, *kernels);
+          const State result = core::stepped(blocked, scene, 3);
+          EXPECT_LT(difference(result, expected), 1e-13);
+          EXPECT_NEAR(result.dissipated, expected.dissipated,
+                      1e-14 * system->kinetic(expected.angular_velocities));
+        }
+      }
+    }
+  }
+}
+
+// In another order than one spring at a time, but to the same second order.
+TEST_P(DampedStepping, BySweepsHasSecondOrder) {
+  const Scene scene = withDampedSprings(testing::randomScene(3, 1500, 1500, 0, 1), 5);
+  const State exact = stepped(scene, IntegrationMethod::fourth_order, 1. / 1024, 64);
+  const auto error = [&](int steps) {
+    const State state = stepped(scene, IntegrationMethod::verlet, 1. / 16 / steps, steps);
+    return (state.positions - exact.positions).norm();
+  };
+  EXPECT_NEAR(error(2) / error(4), 4, 1);
+}
+
+TEST_P(DampedStepping, TakesOutExactlyWhatItSays) {
+  for (const double damping : {1e-3, 1., 1e3, 1e12}) {
+    Scene scene = withDampedSprings(testing::randomScene(2, 1500, 1500, 0, 1), damping);
+    scene = withViscousDamping(scene, damping);
+    SpringLists springs = testing::springsOf(scene);
+    forEachKind([&](auto kind) {
+      for (auto& spring : springs.get<typename decltype(kind)::type>()) spring.stiffness = 1e-30;
+    });
+    scene = testing::sceneOf(scene.particles().items(), springs);
+    const auto system = systemOf(scene, 1, GetParam());
+    const State end = stepped(scene, IntegrationMethod::euler, 0.01, 1);
+    const double before = system->kinetic(stateOf(scene).angular_velocities);
+    const double after = system->kinetic(end.angular_velocities);
+    EXPECT_GT(end.dissipated, 0);
+    EXPECT_NEAR(before - after, end.dissipated, 1e-13 * before) << damping;
+  }
+}
+
+TEST_P(DampedStepping, DoesNotDampHardSpringsOtherwise) {
+  SpringLists springs =
+      testing::arcs({testing::angleSpring(0, 1, 1), testing::angleSpring(2, 3, 1)});
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(2, 3, 4, 1)};
+  forEachKind([&](auto kind) {
+    for (auto& spring : springs.get<typename decltype(kind)::type>()) spring.damping = 0.5;
+  });
+  const Vector3 a = Vector3(1, 2, 3).normalized();
+  std::vector<Particle> particles;
+  for (const Vector3& p : {a, a, a, Vector3(-a), Vector3(0, 1, 0)}) {
+    particles.push_back(testing::particleAt(p));
+    particles.back().angular_velocity = p.cross(Vector3(0.1, 0.2, -0.3));
+  }
+  const Scene scene = testing::sceneOf(particles, springs);
+  const auto system = systemOf(scene, 1, GetParam());
+  SplittingIntegrator plain(system, splittingScheme(IntegrationMethod::euler), 1e-3);
+  EXPECT_LT(
+      difference(stepped(scene, IntegrationMethod::euler, 1e-3, 1), core::stepped(plain, scene, 1)),
+      1e-15);
+}
+
 TEST(Stepping, GivesTheSameBitsOnAnyNumberOfThreads) {
-  for (const Scene& undamped : scenes()) {
-    const Scene scene = withViscousDamping(undamped, 0.1);
+  for (const Scene& scene : dampedScenes()) {
     for (const IntegrationMethod method : kMethods) {
       const State one = stepped(*makeIntegrator(systemOf(scene, 1), method, 1e-3), scene, 5);
       for (const int threads : {2, 3, 7}) {
@@ -109,20 +214,22 @@ TEST(Stepping, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(Stepping, GivesTheSameBitsInAnyPortions) {
-  const Scene scene = withViscousDamping(testing::membraneScene(3), 0.1);
-  for (const IntegrationMethod method : kMethods) {
-    const State whole = stepped(*makeIntegrator(systemOf(scene), method, 1e-3), scene, 10);
-    const auto integrator = makeIntegrator(systemOf(scene), method, 1e-3);
-    State state = stateOf(scene);
-    integrator->take(state);
-    for (const int steps : {1, 0, 3, 1, 2, 3}) {
-      integrator->advance(steps);
+  const Scene undamped = withViscousDamping(testing::membraneScene(3), 0.1);
+  for (const Scene& scene : {undamped, withDampedSprings(undamped, 0.1)}) {
+    for (const IntegrationMethod method : kMethods) {
+      const State whole = stepped(*makeIntegrator(systemOf(scene), method, 1e-3), scene, 10);
+      const auto integrator = makeIntegrator(systemOf(scene), method, 1e-3);
+      State state = stateOf(scene);
+      integrator->take(state);
+      for (const int steps : {1, 0, 3, 1, 2, 3}) {
+        integrator->advance(steps);
+        integrator->give(state);
+      }
+      expectSameBits(whole, state);
+      integrator->take(state);
       integrator->give(state);
+      expectSameBits(whole, state);
     }
-    expectSameBits(whole, state);
-    integrator->take(state);
-    integrator->give(state);
-    expectSameBits(whole, state);
   }
 }
 
@@ -167,8 +274,7 @@ struct Shuffled {
 };
 
 TEST(Stepping, GivesTheSameBitsInWhateverOrderTheSceneIsSent) {
-  for (const Scene& undamped : scenes()) {
-    const Scene scene = withViscousDamping(undamped, 0.1);
+  for (const Scene& scene : dampedScenes()) {
     const Shuffled shuffled(scene);
     for (const IntegrationMethod method : kMethods) {
       const State expected = stepped(*makeIntegrator(systemOf(scene), method, 1e-3), scene, 5);

@@ -1,0 +1,60 @@
+// Dampers one after another, each by its exact flow.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "damper_layout.h"
+
+namespace spherical_springs::core {
+
+template <class Spring>
+struct DamperGradients : std::vector<GradientsOf<DampersOf<Spring>>> {};
+
+class DamperSweep {
+ public:
+  /// `own`: whether dampers act on the ends each by itself.
+  DamperSweep(const DamperLayout& dampers, const PerKind<DamperGradients>& gradients, bool own)
+      : dampers_(dampers), gradients_(gradients), own_(own) {}
+
+  /// To be called before flows are taken, with nothing else under way.
+  void makeRoom();
+
+  /// Takes the flows of a patch's dampers over `duration` [s] at the present gradients.
+  void takeFlows(std::size_t patch, double duration);
+
+  /// The dampers that have all ends in a patch, whose rows begin at `velocities`, in some order and
+  /// in the opposite one.
+  /// @return the energy that they took out [J].
+  double innerForward(std::size_t patch, Row* velocities) const;
+  double innerBackward(std::size_t patch, Row* velocities) const;
+
+  /// Those between patches, there and back; `velocities` has the rows of all.
+  /// @return likewise.
+  double shared(Row* velocities) const;
+
+ private:
+  /// Of a damper: the change of momentum by the rate, and the energy taken by its square.
+  struct Flow {
+    double impulse, energy;
+  };
+  template <class Spring>
+  struct Flows : std::vector<Flow> {};
+
+  static Flow flowOf(double mobility, double duration);
+  template <class Spring>
+  std::size_t flowIndex(std::uint32_t group, std::uint32_t lane) const;
+  template <class Spring>
+  double damp(std::uint32_t group, std::uint32_t lane, Row* const* ends) const;
+  template <class Spring>
+  double dampInner(std::uint32_t group, std::uint32_t lane, Row* velocities) const;
+  template <class Spring>
+  double dampShared(const SharedDamper& damper, Row* velocities) const;
+
+  const DamperLayout& dampers_;
+  const PerKind<DamperGradients>& gradients_;
+  const bool own_;
+  PerKind<Flows> flows_;  // one a damper, or one an end
+};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,39 @@
+// Springs of elements as their own formulas have them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "../kernels/row.h"
+#include "spherical_springs/springs/kinds.h"
+
+namespace spherical_springs::core {
+
+/// A width in use, 0 for a sharp step, as `OrientedAngleSpring` has it: there 0 is the default.
+inline double widthOfSpring(double width) {
+  return std::max(width, std::numeric_limits<double>::min());
+}
+
+/// Rows of a patch where the ends of an element are.
+template <std::size_t N, class Group>
+std::array<std::uint32_t, N> rowsOf(const Group& group, std::uint32_t lane, int first_end = 0) {
+  std::array<std::uint32_t, N> rows;
+  for (std::size_t i = 0; i < N; ++i) {
+    rows[i] = static_cast<std::uint32_t>(group.ends[first_end + i][lane] / kRowLength);
+  }
+  return rows;
+}
+
+template <std::size_t N>
+std::array<Vector3, N> pointsAt(const std::array<std::uint32_t, N>& rows, const Row* positions) {
+  std::array<Vector3, N> points;
+  for (std::size_t i = 0; i < N; ++i) {
+    points[i] = Eigen::Map<const Vector3>(positions[rows[i]].values);
+  }
+  return points;
+}
+
+}  // namespace spherical_springs::core

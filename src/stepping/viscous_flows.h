@@ -1,0 +1,27 @@
+// Viscous damping of all particles over a kick, in the order of a layout.
+#pragma once
+
+#include <vector>
+
+#include "layout.h"
+#include "spherical_springs/damping.h"
+
+namespace spherical_springs::core {
+
+/// `Damping::viscousFlow` of each particle over some duration, in arrays over slots.
+struct ViscousFlow {
+  double duration;  ///< [s]
+  std::vector<double> decay, gain, taken[3];
+};
+
+/// Those of the few durations that a scheme has.
+class ViscousFlows {
+ public:
+  /// Holds until it is called again.
+  const ViscousFlow& over(double duration, const Damping& damping, const Layout& layout);
+
+ private:
+  std::vector<ViscousFlow> known_;
+};
+
+}  // namespace spherical_springs::core
