@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "spherical_springs/range.h"
+#include "stepping/evaluation.h"
 
 namespace spherical_springs::core {
 
 Energies energies(const System& system, const State& state) {
   Energies result;
-  result.by_kind = system.potential(state.positions);
+  result.by_kind = Evaluation(system, state.positions).potential();
   result.kinetic = system.kinetic(state.angular_velocities);
   result.dissipated = state.dissipated;
   return result;
@@ -48,13 +49,7 @@ double Account::angularMomentumError(const System& system, const State& state) {
 }
 
 double maxTorque(const System& system, const State& state) {
-  System::Workspace workspace;
-  system.evaluate(state.positions, workspace);
-  double largest = 0;
-  for (Eigen::Index i = 0; i < system.particleCount(); ++i) {
-    if (!system.pinned(i)) largest = std::max(largest, workspace.torques.col(i).norm());
-  }
-  return largest;
+  return Evaluation(system, state.positions).maxTorque();
 }
 
 double normError(const State& state) {

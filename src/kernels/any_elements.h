@@ -56,6 +56,20 @@ inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spri
   return {select0(~angle.hard, pull), angle.beside, angle.is_far, angle.hard};
 }
 
+/// Whether two corners of a triangle are nearly antipodal, by its squared norm.
+inline LaneMask isNearlyAntipodal(const Lanes& squared_norm) {
+  return ~(squared_norm >= kAntipodal);
+}
+
+/// Of the solid angle of a triangle and the one at rest, modulo 4 pi.
+inline Lanes areaDifference(const Lanes& triple_product, const Lanes& denominator,
+                            const Lanes& rest) {
+  Lanes difference = 2 * arctangent(triple_product, denominator) - rest;
+  difference -= select0(difference > 2 * kPi, 4 * kPi - Lanes{});
+  difference += select0(difference < -2 * kPi, 4 * kPi - Lanes{});
+  return difference;
+}
+
 /// Factors of a triangle's forces: 2 stiffness C / squared norm, times denominator and triple
 /// product.
 struct AnyTriangle {
@@ -66,10 +80,8 @@ struct AnyTriangle {
 inline AnyTriangle anyTriangle(const Lanes& triple_product, const Lanes& denominator,
                                const LaneConstants& spring) {
   const Lanes squared_norm = triple_product * triple_product + denominator * denominator;
-  const LaneMask hard = ~(squared_norm >= kAntipodal);
-  Lanes difference = 2 * arctangent(triple_product, denominator) - spring.rest;
-  difference -= select0(difference > 2 * kPi, 4 * kPi - Lanes{});
-  difference += select0(difference < -2 * kPi, 4 * kPi - Lanes{});
+  const LaneMask hard = isNearlyAntipodal(squared_norm);
+  const Lanes difference = areaDifference(triple_product, denominator, spring.rest);
   const Lanes pull = select0(~hard, 2 * spring.stiffness * difference / squared_norm);
   return {pull * denominator, pull * triple_product, hard};
 }

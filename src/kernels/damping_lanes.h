@@ -49,11 +49,11 @@ FreshGradients<3> gradientsOf(const Batch<TriangleDampers>& batch, const double*
   const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
                c = batch.gather(2, positions);
   const TriangleEdges e(a, b, c);
-  const Lanes squared_norm = e.triple_product * e.triple_product + e.denominator * e.denominator;
+  const Lanes squared_norm = e.squaredNorm();
   const Lanes alpha = 2 * e.triple_product / squared_norm, beta = 2 * e.denominator / squared_norm;
   return {{{cross(alpha * (e.ab - e.ca) + tripleProductForce(beta, a, e.bc, e), a),
             cross(alpha * (e.bc - e.ab) + tripleProductForce(beta, b, e.ca, e), b)}},
-          ~(squared_norm >= kAntipodal)};
+          isNearlyAntipodal(squared_norm)};
 }
 
 FreshGradients<3> gradientsOf(const Batch<OrientedArcDampers>& batch, const double* positions) {

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "damping_lanes.h"
+#include "energy_lanes.h"
 #include "particle_lanes.h"
 #include "rows.h"
 #include "step_lanes.h"
@@ -87,6 +88,8 @@ namespace spherical_springs::core {
 static constexpr StepKernels kKernels = {
     {addAll<ShortArcs>, addAll<ShortTriangles<0>>, addAll<ShortTriangles<1>>,
      addAll<ShortTriangles<2>>, addAll<NoShortWay<OrientedArcs>>},
+    {addEnergies<Arcs, 1>, addEnergies<Triangles<0>, 1>, addEnergies<Triangles<1>, 2>,
+     addEnergies<Triangles<2>, 3>, addEnergies<OrientedArcs, 1>},
     kick,
     viscousKick,
     drift,

@@ -55,6 +55,8 @@ struct TriangleEdges {
         area(cross(ca, ab)),
         triple_product(dot(a, area)),
         denominator(4 - 0.5 * (squared_ab + squared_bc + squared_ca)) {}
+
+  Lanes squaredNorm() const { return triple_product * triple_product + denominator * denominator; }
 };
 
 }  // namespace

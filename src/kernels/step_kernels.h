@@ -39,6 +39,19 @@ template <class Group>
 using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
                                       const double* positions, double* forces, std::uint32_t* hard);
 
+/// Of the first spring of each element, and of the arcs along the edges of a triangle [J].
+struct ElementEnergies {
+  double first, arcs;
+};
+
+/// Adds the energies of those elements whose first end is at an offset below `limit`, but for the
+/// hard ones among them.
+/// @return how many are hard.
+template <class Group>
+using EnergyKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
+                                       const double* positions, std::uint32_t limit,
+                                       ElementEnergies& energies, std::uint32_t* hard);
+
 /// What a kick over some time does to particles with viscous damping, as Damping::ViscousFlow has
 /// it: arrays over particles.
 struct ViscousKick {
@@ -60,6 +73,9 @@ struct StepKernels {
   std::tuple<ForceKernel<Arcs>, ForceKernel<Triangles<0>>, ForceKernel<Triangles<1>>,
              ForceKernel<Triangles<2>>, ForceKernel<OrientedArcs>>
       forces;
+  std::tuple<EnergyKernel<Arcs>, EnergyKernel<Triangles<0>>, EnergyKernel<Triangles<1>>,
+             EnergyKernel<Triangles<2>>, EnergyKernel<OrientedArcs>>
+      energies;
   KickKernel kick;
   ViscousKickKernel viscous_kick;
   DriftKernel drift;

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "../kernels/row.h"
+#include "../kernels/step_kernels.h"
 #include "spherical_springs/springs/kinds.h"
 
 namespace spherical_springs::core {
@@ -34,6 +34,34 @@ std::array<Vector3, N> pointsAt(const std::array<std::uint32_t, N>& rows, const 
     points[i] = Eigen::Map<const Vector3>(positions[rows[i]].values);
   }
   return points;
+}
+
+/// Calls `visit(spring, rows of its ends)` for each spring of an element.
+template <int kEnds, int kSprings, class Visitor>
+void forEachSpring(const ElementGroup<kEnds, kSprings>& group, std::uint32_t lane,
+                   const Visitor& visit) {
+  if constexpr (kEnds == 3) {
+    SolidAngleSpring triangle;
+    triangle.rest_solid_angle = group.springs[0].rest[lane];
+    triangle.stiffness = group.springs[0].stiffness[lane];
+    visit(triangle, rowsOf<3>(group, lane));
+  }
+  constexpr int kFirstArc = kEnds - 2;
+  for (int i = kFirstArc; i < kSprings; ++i) {
+    AngleSpring arc;
+    arc.rest_angle = group.springs[i].rest[lane];
+    arc.stiffness = group.springs[i].stiffness[lane];
+    visit(arc, rowsOf<2>(group, lane, i - kFirstArc));
+  }
+}
+
+template <class Visitor>
+void forEachSpring(const OrientedArcs& group, std::uint32_t lane, const Visitor& visit) {
+  OrientedAngleSpring spring;
+  spring.rest_angle = group.rest[lane];
+  spring.stiffness = group.stiffness[lane];
+  spring.width = widthOfSpring(group.width[lane]);
+  visit(spring, rowsOf<3>(group, lane));
 }
 
 }  // namespace spherical_springs::core

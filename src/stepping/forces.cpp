@@ -7,8 +7,13 @@
 
 namespace spherical_springs::core {
 
-Scratch& Scratch::cleared(const Layout& layout, const Patch& patch) {
+Scratch& Scratch::ofThisThread() {
   static thread_local Scratch scratch;
+  return scratch;
+}
+
+Scratch& Scratch::cleared(const Layout& layout, const Patch& patch) {
+  Scratch& scratch = ofThisThread();
   if (scratch.sums.size() < layout.largestPatch()) scratch.sums.resize(layout.largestPatch());
   std::fill_n(scratch.sums.begin(), patch.row_count, Row{});
   return scratch;
@@ -25,33 +30,6 @@ void addExactly(const Spring& spring, const std::array<std::uint32_t, Spring::kP
     const Vector3 torque = -spring.stiffness * c.value * c.gradient[i];
     Eigen::Map<Vector3>(forces[rows[i]].values) += torque.cross(points[i]);
   }
-}
-
-template <int kEnds, int kSprings>
-void addExactly(const ElementGroup<kEnds, kSprings>& group, std::uint32_t lane,
-                const Row* positions, std::vector<Row>& forces) {
-  if constexpr (kEnds == 3) {
-    SolidAngleSpring triangle;
-    triangle.rest_solid_angle = group.springs[0].rest[lane];
-    triangle.stiffness = group.springs[0].stiffness[lane];
-    addExactly(triangle, rowsOf<3>(group, lane), positions, forces);
-  }
-  constexpr int kFirstArc = kEnds - 2;
-  for (int i = kFirstArc; i < kSprings; ++i) {
-    AngleSpring arc;
-    arc.rest_angle = group.springs[i].rest[lane];
-    arc.stiffness = group.springs[i].stiffness[lane];
-    addExactly(arc, rowsOf<2>(group, lane, i - kFirstArc), positions, forces);
-  }
-}
-
-void addExactly(const OrientedArcs& group, std::uint32_t lane, const Row* positions,
-                std::vector<Row>& forces) {
-  OrientedAngleSpring spring;
-  spring.rest_angle = group.rest[lane];
-  spring.stiffness = group.stiffness[lane];
-  spring.width = widthOfSpring(group.width[lane]);
-  addExactly(spring, rowsOf<3>(group, lane), positions, forces);
 }
 
 }  // namespace
@@ -76,7 +54,10 @@ void Forces::addElements(const Patch& patch, const Row* positions, Scratch& scra
       groups, end - begin, positions->values, scratch.sums[0].values, scratch.hard.data());
   for (std::uint32_t h = 0; h < hard_count; ++h) {
     const std::uint32_t element = scratch.hard[h];
-    addExactly(groups[element / kGroup], element % kGroup, positions, scratch.sums);
+    forEachSpring(groups[element / kGroup], element % kGroup,
+                  [&](const auto& spring, const auto& rows) {
+                    addExactly(spring, rows, positions, scratch.sums);
+                  });
   }
 }
 

@@ -15,6 +15,8 @@ struct Scratch {
   std::vector<Row> sums;            ///< a row for each of a patch
   std::vector<std::uint32_t> hard;  ///< indices of elements
 
+  static Scratch& ofThisThread();
+
   /// That of the calling thread, with room for any patch of a layout; sums are 0 in as many rows as
   /// `patch` has.
   static Scratch& cleared(const Layout& layout, const Patch& patch);

@@ -1,0 +1,114 @@
+#include "evaluation.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "../parallel.h"
+#include "exact_springs.h"
+#include "forces.h"
+
+namespace spherical_springs::core {
+
+Evaluation::Evaluation(const System& system, const Points& positions, const StepKernels& kernels)
+    : system_(system),
+      layout_(system.layout()),
+      kernels_(kernels),
+      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}) {
+  forEachPatch([&](std::size_t, const Patch& patch) {
+    for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+      Eigen::Map<Vector3>(positions_[patch.first_row + i].values) =
+          positions.col(layout_->order()[patch.first_place + i]);
+    }
+  });
+  forEachPatch([&](std::size_t, const Patch& patch) { layout_->welcomeGuests(patch, positions_); });
+}
+
+template <class Work>
+void Evaluation::forEachPatch(const Work& work) const {
+  const auto& patches = layout_->patches();
+  const int threads = patches.size() > 1 ? system_.threads() : 1;
+  forOnThreads(patches.size(), threads, [&](std::ptrdiff_t p) { work(p, patches[p]); });
+}
+
+PotentialEnergies Evaluation::potential() const {
+  std::vector<PotentialEnergies> of_patches(layout_->patches().size());
+  forEachPatch([&](std::size_t p, const Patch& patch) { of_patches[p] = potentialOf(patch); });
+  PotentialEnergies sum;
+  for (const PotentialEnergies& of_patch : of_patches) {
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      sum.get<Spring>().joules += of_patch.get<Spring>().joules;
+    });
+  }
+  return sum;
+}
+
+PotentialEnergies Evaluation::potentialOf(const Patch& patch) const {
+  PotentialEnergies energies;
+  addEnergies<0>(patch, energies);
+  addEnergies<1>(patch, energies);
+  addEnergies<2>(patch, energies);
+  addEnergies<3>(patch, energies);
+  addEnergies<4>(patch, energies);
+  return energies;
+}
+
+namespace {
+
+double& firstOf(const Arcs&, PotentialEnergies& energies) {
+  return energies.get<AngleSpring>().joules;
+}
+template <int kSprings>
+double& firstOf(const ElementGroup<3, kSprings>&, PotentialEnergies& energies) {
+  return energies.get<SolidAngleSpring>().joules;
+}
+double& firstOf(const OrientedArcs&, PotentialEnergies& energies) {
+  return energies.get<OrientedAngleSpring>().joules;
+}
+
+}  // namespace
+
+// A spring counts in the patch of the first end of its element.
+template <int kSort>
+void Evaluation::addEnergies(const Patch& patch, PotentialEnergies& energies) const {
+  const auto [begin, end] = patch.groups[kSort];
+  if (begin == end) return;
+  const auto* const groups = std::get<kSort>(layout_->groups()).data() + begin;
+  const Row* const positions = &positions_[patch.first_row];
+  Scratch& scratch = Scratch::ofThisThread();
+  scratch.makeRoom(kGroup * (end - begin));
+  ElementEnergies added = {0, 0};
+  const std::uint32_t hard_count = std::get<kSort>(kernels_.energies)(
+      groups, end - begin, positions->values, kRowLength * patch.slotCount(), added,
+      scratch.hard.data());
+  firstOf(*groups, energies) += added.first;
+  energies.get<AngleSpring>().joules += added.arcs;
+  for (std::uint32_t h = 0; h < hard_count; ++h) {
+    const std::uint32_t element = scratch.hard[h];
+    const auto add = [&](const auto& spring, const auto& rows) {
+      const double c = condition(spring, pointsAt(rows, positions)).value;
+      energies.get<std::decay_t<decltype(spring)>>().joules += 0.5 * spring.stiffness * c * c;
+    };
+    forEachSpring(groups[element / kGroup], element % kGroup, add);
+  }
+}
+
+double Evaluation::maxTorque() const {
+  std::vector<double> of_patches(layout_->patches().size(), 0);
+  forEachPatch([&](std::size_t p, const Patch& patch) { of_patches[p] = maxTorqueIn(patch); });
+  return *std::max_element(of_patches.begin(), of_patches.end());
+}
+
+double Evaluation::maxTorqueIn(const Patch& patch) const {
+  const Row* const positions = &positions_[patch.first_row];
+  const Row* const forces = Forces(*layout_, kernels_).on(patch, positions);
+  double largest = 0;
+  for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
+    if (system_.pinned(layout_->order()[patch.first_place + i])) continue;
+    const Eigen::Map<const Vector3> position(positions[i].values), force(forces[i].values);
+    largest = std::max(largest, position.cross(force).norm());
+  }
+  return largest;
+}
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,39 @@
+// What springs hold and how they pull at some positions, several springs at a time.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "../kernels/step_kernels.h"
+#include "layout.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+/// Results do not depend on the number of threads, to the last bit.
+class Evaluation {
+ public:
+  /// `positions`: one column a particle, in the order of ids.
+  Evaluation(const System& system, const Points& positions,
+             const StepKernels& kernels = stepKernels());
+
+  PotentialEnergies potential() const;
+
+  /// Largest torque of the springs on a particle that is not pinned [N m].
+  double maxTorque() const;
+
+ private:
+  template <class Work>
+  void forEachPatch(const Work& work) const;
+  PotentialEnergies potentialOf(const Patch& patch) const;
+  template <int kSort>
+  void addEnergies(const Patch& patch, PotentialEnergies& energies) const;
+  double maxTorqueIn(const Patch& patch) const;
+
+  const System& system_;
+  const std::shared_ptr<const Layout> layout_;
+  const StepKernels& kernels_;
+  std::vector<Row> positions_;
+};
+
+}  // namespace spherical_springs::core
