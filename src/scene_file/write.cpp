@@ -1,47 +1,62 @@
-#include <nlohmann/json.hpp>
+#include <array>
 
 #include "../files.h"
 #include "format.h"
 #include "spherical_springs/scene_file.h"
+#include "text_writer.h"
 
 namespace spherical_springs::core {
 namespace {
 
-using Json = nlohmann::json;
-
 /// One object on one line, its fields in the order in which they are written.
 class ObjectWriter {
  public:
-  explicit ObjectWriter(std::ostream& out) : out_(out) { out_ << '{'; }
-  ~ObjectWriter() { out_ << '}'; }
+  explicit ObjectWriter(TextWriter& out) : out_(out) { out_ << "{"; }
+  ~ObjectWriter() { out_ << "}"; }
   ObjectWriter(const ObjectWriter&) = delete;
   ObjectWriter& operator=(const ObjectWriter&) = delete;
 
-  void write(const char* field, const Json& value) {
-    out_ << (first_ ? "\"" : ",\"") << field << "\":" << value.dump();
-    first_ = false;
+  template <class Value>
+  void write(const char* field, const Value& value) {
+    begin(field);
+    out_ << value;
+  }
+  template <class List>
+  void writeList(const char* field, const List& values) {
+    begin(field);
+    const char* separator = "[";
+    for (const auto& value : values) {
+      out_ << separator << value;
+      separator = ",";
+    }
+    out_ << "]";
   }
 
  private:
-  std::ostream& out_;
+  void begin(const char* field) {
+    out_ << (first_ ? "\"" : ",\"") << field << "\":";
+    first_ = false;
+  }
+
+  TextWriter& out_;
   bool first_ = true;
 };
 
-Json toJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+std::array<double, 3> listOf(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 void writeFields(ObjectWriter& object, const Particle& particle) {
-  object.write("position", toJson(particle.position));
-  object.write("angular_velocity", toJson(particle.angular_velocity));
+  object.writeList("position", listOf(particle.position));
+  object.writeList("angular_velocity", listOf(particle.angular_velocity));
   object.write("pinned", particle.pinned);
 }
 
 template <class Spring>
 void writeFields(ObjectWriter& object, const Spring& spring) {
-  object.write("particles", spring.particles);
+  object.writeList("particles", spring.particles);
 }
 
 template <class Item>
-void writeItems(std::ostream& out, const char* name, const IdTable<Item>& table) {
+void writeItems(TextWriter& out, const char* name, const IdTable<Item>& table) {
   out << ",\n\"" << name << "\": [";
   for (std::size_t i = 0; i < table.size(); ++i) {
     out << (i > 0 ? ",\n " : "\n ");
@@ -57,8 +72,9 @@ void writeItems(std::ostream& out, const char* name, const IdTable<Item>& table)
 
 }  // namespace
 
-void writeScene(std::ostream& out, const Scene& scene, double time) {
-  out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << Json(time).dump();
+void writeScene(std::ostream& stream, const Scene& scene, double time) {
+  TextWriter out(stream);
+  out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << time;
   writeItems(out, "particles", scene.particles());
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;

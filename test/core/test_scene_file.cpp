@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -71,6 +72,20 @@ TEST_F(SceneFiles, ReadBackToTheLastBit) {
     }
   });
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "nothing is left beside";
+}
+
+TEST_F(SceneFiles, ReadBackNumbersOfEveryForm) {
+  const double numbers[] = {-0., 1, 1e30, 1e-300, 5e-324, 0.1, 123456789, 1. / 3, 1e22, -2.5e-7};
+  for (const double number : numbers) {
+    Particle particle = testing::particleAt(Vector3(1, 0, 0));
+    particle.angular_velocity = Vector3(0, number, 0);
+    Scene scene;
+    scene.addParticles({particle});
+    writeScene(path_, scene, 0);
+    const double read = readScene(path_, {}).scene.particles().item(0).angular_velocity.y();
+    EXPECT_EQ(read, number);
+    EXPECT_EQ(std::signbit(read), std::signbit(number)) << number;
+  }
 }
 
 TEST_F(SceneFiles, MayLeaveFieldsOut) {
