@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -14,11 +15,36 @@ namespace spherical_springs::core {
 
 using Json = nlohmann::json;
 
-/// The fields of one object, each taken once; what is left at the end has no meaning.
+/// The fields of one object as they come, each taken once; what is left at the end has no meaning.
 class Fields {
  public:
-  Fields(const Json& object, std::string name) : object_(object), name_(std::move(name)) {
-    if (!object.is_object()) throw std::invalid_argument(name_ + " is not an object");
+  /// Begins an object; memory of the one before is used again.
+  void restart(const std::string& name) {
+    name_ = name;
+    count_ = 0;
+  }
+
+  /// Begins a field; one of the same name is forgotten.
+  void begin(const std::string& name) {
+    present_ = find(name.c_str());
+    if (present_ == nullptr) {
+      if (++count_ > fields_.size()) fields_.emplace_back();
+      present_ = &fields_[count_ - 1];
+      present_->name = name;
+    }
+    present_->is_list = present_->taken = false;
+  }
+  void beginList() {
+    present_->is_list = true;
+    present_->list.clear();
+  }
+  /// To the field that was begun, or to its list.
+  void add(Json value) {
+    if (present_->is_list) {
+      present_->list.push_back(std::move(value));
+    } else {
+      present_->value = std::move(value);
+    }
   }
 
   void take(const char* field, double& value) {
@@ -36,32 +62,24 @@ class Fields {
            [&](const Json& j) { value = toId(j, field); });
   }
   void take(const char* field, Vector3& value) {
-    takeIf(field, &Json::is_array, "three numbers", [&](const Json& j) {
-      requireSize(j, 3, field);
+    takeList(field, 3, "three numbers", [&](const std::vector<Json>& list) {
       for (int i = 0; i < 3; ++i) {
-        if (!j[i].is_number()) refuse(field, j, "three numbers");
-        value[i] = j[i].get<double>();
+        if (!list[i].is_number()) refuse(field, list, "three numbers");
+        value[i] = list[i].get<double>();
       }
     });
   }
   template <std::size_t N>
   void take(const char* field, std::array<std::uint32_t, N>& value) {
-    takeIf(field, &Json::is_array, "ids", [&](const Json& j) {
-      requireSize(j, N, field);
-      for (std::size_t i = 0; i < N; ++i) value[i] = toId(j[i], field);
+    takeList(field, N, "ids", [&](const std::vector<Json>& list) {
+      for (std::size_t i = 0; i < N; ++i) value[i] = toId(list[i], field);
     });
-  }
-  /// Counts a field as taken.
-  void pass(const std::string& field) {
-    names_.push_back(field);
-    ++taken_;
   }
 
   void requireNothingLeft() const {
-    if (taken_ == object_.size()) return;
-    for (const auto& item : object_.items()) {
-      if (std::find(names_.begin(), names_.end(), item.key()) == names_.end()) {
-        throw std::invalid_argument(name_ + " has no field '" + item.key() + "'");
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!fields_[i].taken) {
+        throw std::invalid_argument(name_ + " has no field '" + fields_[i].name + "'");
       }
     }
   }
@@ -75,15 +93,42 @@ class Fields {
   }
 
  private:
+  struct Field {
+    std::string name;
+    Json value;
+    std::vector<Json> list;
+    bool is_list = false, taken = false;
+
+    Json json() const { return is_list ? Json(list) : value; }
+  };
+
   template <class Use>
-  void takeIf(const char* field, bool (Json::*is)() const noexcept, const char* allowed,
+  void takeIf(const char* name, bool (Json::*is)() const noexcept, const char* allowed,
               const Use& use) {
-    names_.push_back(field);
-    const auto found = object_.find(field);
-    if (found == object_.end()) return;
-    if (!((*found).*is)()) refuse(field, *found, allowed);
-    use(*found);
-    ++taken_;
+    Field* const field = find(name);
+    if (field == nullptr) return;
+    if (field->is_list || !(field->value.*is)()) refuse(name, field->json(), allowed);
+    use(field->value);
+    field->taken = true;
+  }
+
+  template <class Use>
+  void takeList(const char* name, std::size_t size, const char* allowed, const Use& use) {
+    Field* const field = find(name);
+    if (field == nullptr) return;
+    if (!field->is_list) refuse(name, field->value, allowed);
+    if (field->list.size() != size) {
+      refuse(name, field->json(), (std::to_string(size) + " of them").c_str());
+    }
+    use(field->list);
+    field->taken = true;
+  }
+
+  Field* find(const char* name) {
+    const auto end = fields_.begin() + static_cast<std::ptrdiff_t>(count_);
+    const auto found =
+        std::find_if(fields_.begin(), end, [&](const Field& f) { return f.name == name; });
+    return found == end ? nullptr : &*found;
   }
 
   std::uint32_t toId(const Json& json, const char* field) const {
@@ -93,18 +138,14 @@ class Fields {
     return json.get<std::uint32_t>();
   }
 
-  void requireSize(const Json& json, std::size_t size, const char* field) const {
-    if (json.size() != size) refuse(field, json, (std::to_string(size) + " of them").c_str());
-  }
-
   [[noreturn]] void refuse(const char* field, const Json& json, const char* allowed) const {
     throw fault(name_, field, json, allowed);
   }
 
-  const Json& object_;
-  const std::string name_;
-  std::vector<std::string> names_;
-  std::size_t taken_ = 0;
+  std::string name_;
+  std::vector<Field> fields_;  // the first `count_` are those of this object
+  std::size_t count_ = 0;
+  Field* present_ = nullptr;
 };
 
 }  // namespace spherical_springs::core

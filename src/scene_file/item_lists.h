@@ -17,7 +17,7 @@ struct ItemList {
   std::vector<Item> items;
   std::vector<std::size_t> ends;  ///< in the file [bytes]
 
-  void take(const char* name, const Json& object, std::size_t end);
+  void take(Fields& fields, std::size_t end);
 };
 
 inline void takeFields(Fields& fields, Particle& particle) {
@@ -33,8 +33,7 @@ void takeFields(Fields& fields, Spring& spring) {
 }
 
 template <class Item>
-void ItemList<Item>::take(const char* name, const Json& object, std::size_t end) {
-  Fields fields(object, std::string(name) + "[" + std::to_string(items.size()) + "]");
+void ItemList<Item>::take(Fields& fields, std::size_t end) {
   std::uint32_t id = ids.empty() ? 0 : ids.back() + 1;
   Item item;
   fields.take("id", id);
@@ -60,16 +59,16 @@ class ItemLists {
 
   /// Takes the next item of the list `name`, which ends at byte `end` of the file.
   /// @throw std::invalid_argument for what is no item, or one too many.
-  void take(const std::string& name, const Json& object, std::size_t end) {
+  void take(const std::string& name, Fields& fields, std::size_t end) {
     if (name == kParticles) {
       require(kParticles, particles_.items.size(), limits_.particles);
-      particles_.take(kParticles, object, end);
+      particles_.take(fields, end);
       return;
     }
     require("springs", springs_taken_++, limits_.springs);
     forEachKind([&](auto kind) {
       using Spring = typename decltype(kind)::type;
-      if (name == Spring::kTable) springs_.get<Spring>().take(Spring::kTable, object, end);
+      if (name == Spring::kTable) springs_.get<Spring>().take(fields, end);
     });
   }
 

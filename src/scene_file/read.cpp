@@ -5,6 +5,7 @@
 
 #include "../files.h"
 #include "../scene_checks.h"
+#include "counting_buffer.h"
 #include "fields.h"
 #include "format.h"
 #include "item_lists.h"
@@ -14,111 +15,161 @@ namespace spherical_springs::core {
 namespace {
 
 namespace fs = std::filesystem;
-using Event = Json::parse_event_t;
 
 void requireFormat(const std::string& format) {
   if (format == kSceneFormat) return;
   throw std::invalid_argument("format is '" + format + "'; allowed: " + kSceneFormat);
 }
 
-/// Reads item by item: the memory holds the items, and never the whole text.
-class SceneReader {
+/// Takes what a parser comes to, item by item: the memory holds the items, and never the whole
+/// text.
+class SceneEvents {
  public:
-  SceneReader(std::istream& in, const SceneLimits& limits) : in_(in), lists_(limits) {}
-
-  SceneFile read() {
-    try {
-      const Json rest = Json::parse(
-          in_, [this](int depth, Event event, Json& value) { return keep(depth, event, value); });
-      const double time = timeOf(rest);
-      finished_ = true;
-      return {lists_.scene(), time};
-    } catch (const Json::parse_error& fault) {
-      throw std::invalid_argument("at byte " + std::to_string(fault.byte) + ": " + fault.what());
-    } catch (const ItemFault& fault) {
-      throw std::invalid_argument(before(lists_.endOf(fault.list, fault.index)) + fault.what());
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& fault) {
-      if (finished_) throw;
-      throw std::invalid_argument(before(offset()) + fault.what());
-    }
+  SceneEvents(const CountingBuffer& source, ItemLists& lists) : source_(source), lists_(lists) {
+    scene_.restart(kScene);
   }
 
- private:
-  /// Of what the parser has come to, whether it shall keep it: items are taken and let go.
-  bool keep(int depth, Event event, const Json& value) {
-    if (event == Event::object_end || event == Event::array_end) {
-      if (depth == 1) list_.clear();
-      if (depth != 2) return true;
-      lists_.take(list_, value, offset());
-      return false;
+  bool null() { return value(nullptr); }
+  bool boolean(bool v) { return value(v); }
+  bool number_integer(Json::number_integer_t v) { return value(v); }
+  bool number_unsigned(Json::number_unsigned_t v) { return value(v); }
+  bool number_float(Json::number_float_t v, const std::string&) { return value(v); }
+  bool string(std::string& v) { return value(v); }
+  template <class Binary>
+  bool binary(Binary&) {
+    return true;  // JSON has none
+  }
+
+  bool key(const std::string& name) {
+    if (depth_ > kInScene) {
+      item_.begin(name);
+      return true;
     }
-    if (depth == 0 && event != Event::object_start) {
-      throw std::invalid_argument("the scene is not an object");
+    field_ = name;
+    if (!seen_.insert(name).second) {
+      throw std::invalid_argument("the scene has two fields '" + name + "'");
     }
-    if (depth == 1) enter(event, value);
-    if (depth == 2 && event != Event::key && event != Event::object_start) {
-      throw std::invalid_argument(list_ + "[" + std::to_string(lists_.size(list_)) +
-                                  "] is not an object");
-    }
-    if (depth >= 4 && event != Event::value) {
-      throw std::invalid_argument("lists in lists, or objects, where values should be");
-    }
+    if (!ItemLists::isList(name)) scene_.begin(name);
     return true;
   }
 
-  /// What stands in the scene itself: the name of a field, then what the field is.
-  void enter(Event event, const Json& value) {
-    if (event == Event::key) {
-      field_ = value.get<std::string>();
-      if (!seen_.insert(field_).second) {
-        throw std::invalid_argument("the scene has two fields '" + field_ + "'");
-      }
-      return;
-    }
-    const bool is_list = ItemLists::isList(field_);
-    if (event == Event::value) {
-      if (is_list) throw Fields::fault("the scene", field_, value, "a list");
-      if (field_ == "format" && value.is_string()) requireFormat(value.get<std::string>());
-      return;
-    }
-    if (!is_list) {
-      throw std::invalid_argument("the scene has no field '" + field_ + "' that holds others");
-    }
-    if (event != Event::array_start) {
+  bool start_object(std::size_t) {
+    if (depth_ == kInScene) {
+      requireList();
       throw std::invalid_argument("the scene." + field_ + " is an object; allowed: a list");
     }
-    list_ = field_;
+    if (depth_ > kInList) refuseNesting();
+    if (depth_ == kInList) item_.restart(nameOfItem());
+    ++depth_;
+    return true;
   }
 
-  double timeOf(const Json& rest) const {
-    Fields fields(rest, "the scene");
+  bool end_object() {
+    if (--depth_ == kInList) lists_.take(field_, item_, source_.offset());
+    return true;
+  }
+
+  bool start_array(std::size_t) {
+    if (depth_ == kOutside) refuseOther();
+    if (depth_ == kInScene) requireList();
+    if (depth_ == kInList) refuseItem();
+    if (depth_ == kInItem) item_.beginList();
+    if (depth_ > kInItem) refuseNesting();
+    ++depth_;
+    return true;
+  }
+
+  bool end_array() {
+    --depth_;
+    return true;
+  }
+
+  bool parse_error(std::size_t, const std::string&, const Json::exception& fault) {
+    const auto* const of_text = dynamic_cast<const Json::parse_error*>(&fault);
+    if (of_text != nullptr) throw Json::parse_error(*of_text);
+    throw std::invalid_argument(fault.what());
+  }
+
+  /// Of the whole scene, at its end [s].
+  double time() {
     std::string format;
     double time = 0;
-    fields.take("format", format);
-    fields.take("time", time);
-    for (const auto& item : rest.items()) {
-      if (ItemLists::isList(item.key())) fields.pass(item.key());
-    }
-    fields.requireNothingLeft();
+    scene_.take("format", format);
+    scene_.take("time", time);
+    scene_.requireNothingLeft();
     requireFormat(format);
     requireInside(Range{0, kLargest, "0 to 1e30 [s]"}, time, "time");
     return time;
   }
 
-  std::size_t offset() const { return in_.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in); }
-  static std::string before(std::size_t offset) {
-    return "before byte " + std::to_string(offset) + ": ";
+ private:
+  static constexpr const char* kScene = "the scene";
+  enum Depth { kOutside, kInScene, kInList, kInItem };  // and in a list of an item
+
+  bool value(Json v) {
+    if (depth_ == kOutside) refuseOther();
+    if (depth_ == kInList) refuseItem();
+    if (depth_ >= kInItem) {
+      item_.add(std::move(v));
+      return true;
+    }
+    if (ItemLists::isList(field_)) throw Fields::fault(kScene, field_, v, "a list");
+    if (field_ == "format" && v.is_string()) requireFormat(v.get<std::string>());
+    scene_.add(std::move(v));
+    return true;
   }
 
-  std::istream& in_;
-  ItemLists lists_;
+  std::string nameOfItem() const {
+    return field_ + "[" + std::to_string(lists_.size(field_)) + "]";
+  }
+
+  void requireList() const {
+    if (ItemLists::isList(field_)) return;
+    throw std::invalid_argument("the scene has no field '" + field_ + "' that holds others");
+  }
+  [[noreturn]] void refuseItem() const {
+    throw std::invalid_argument(nameOfItem() + " is not an object");
+  }
+  [[noreturn]] static void refuseOther() {
+    throw std::invalid_argument("the scene is not an object");
+  }
+  [[noreturn]] static void refuseNesting() {
+    throw std::invalid_argument("lists in lists, or objects, where values should be");
+  }
+
+  const CountingBuffer& source_;
+  ItemLists& lists_;
+  int depth_ = kOutside;
   std::set<std::string> seen_;
   std::string field_;  // of the scene, which is being read
-  std::string list_;   // likewise, where it is a list
-  bool finished_ = false;
+  Fields scene_, item_;
 };
+
+SceneFile read(std::istream& in, const SceneLimits& limits) {
+  const auto before = [](std::size_t offset) {
+    return "before byte " + std::to_string(offset) + ": ";
+  };
+  CountingBuffer source(in);
+  std::istream counted(&source);
+  ItemLists lists(limits);
+  bool finished = false;
+  try {
+    SceneEvents events(source, lists);
+    Json::sax_parse(counted, &events);
+    const double time = events.time();
+    finished = true;
+    return {lists.scene(), time};
+  } catch (const Json::parse_error& fault) {
+    throw std::invalid_argument("at byte " + std::to_string(fault.byte) + ": " + fault.what());
+  } catch (const ItemFault& fault) {
+    throw std::invalid_argument(before(lists.endOf(fault.list, fault.index)) + fault.what());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& fault) {
+    if (finished) throw;
+    throw std::invalid_argument(before(source.offset()) + fault.what());
+  }
+}
 
 }  // namespace
 
@@ -131,6 +182,6 @@ SceneFile readScene(const fs::path& path, SceneLimits limits) {
   }
 }
 
-SceneFile readScene(std::istream& in, SceneLimits limits) { return SceneReader(in, limits).read(); }
+SceneFile readScene(std::istream& in, SceneLimits limits) { return read(in, limits); }
 
 }  // namespace spherical_springs::core
