@@ -57,13 +57,13 @@ inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spri
 }
 
 /// Whether two corners of a triangle are nearly antipodal, by its squared norm.
-inline LaneMask isNearlyAntipodal(const Lanes& squared_norm) {
+[[gnu::always_inline]] inline LaneMask isNearlyAntipodal(const Lanes& squared_norm) {
   return ~(squared_norm >= kAntipodal);
 }
 
 /// Of the solid angle of a triangle and the one at rest, modulo 4 pi.
-inline Lanes areaDifference(const Lanes& triple_product, const Lanes& denominator,
-                            const Lanes& rest) {
+[[gnu::always_inline]] inline Lanes areaDifference(const Lanes& triple_product,
+                                                   const Lanes& denominator, const Lanes& rest) {
   Lanes difference = 2 * arctangent(triple_product, denominator) - rest;
   difference -= select0(difference > 2 * kPi, 4 * kPi - Lanes{});
   difference += select0(difference < -2 * kPi, 4 * kPi - Lanes{});

@@ -15,7 +15,8 @@ struct LaneConditions {
   LaneMask hard;
 };
 
-inline Lanes arcCondition(const Lanes3& a, const Lanes3& b, const Lanes& rest) {
+[[gnu::always_inline]] inline Lanes arcCondition(const Lanes3& a, const Lanes3& b,
+                                                 const Lanes& rest) {
   return anyAngle(a, b).value - rest;
 }
 
@@ -50,16 +51,18 @@ inline LaneConditions<1> conditionsOf(const Batch<OrientedArcs>& batch, const do
 }
 
 template <int kEnds, int kSprings>
-Lanes stiffnessOf(const Batch<ElementGroup<kEnds, kSprings>>& batch, int spring) {
+[[gnu::always_inline]] inline Lanes stiffnessOf(const Batch<ElementGroup<kEnds, kSprings>>& batch,
+                                                int spring) {
   return LaneConstants(batch, spring).stiffness;
 }
-inline Lanes stiffnessOf(const Batch<OrientedArcs>& batch, int) {
+[[gnu::always_inline]] inline Lanes stiffnessOf(const Batch<OrientedArcs>& batch, int) {
   return load(batch.group->stiffness + batch.first);
 }
 
 /// Which elements have their first end below an offset.
 template <class Group>
-LaneMask firstEndBelow(const Batch<Group>& batch, std::uint32_t limit) {
+[[gnu::always_inline]] inline LaneMask firstEndBelow(const Batch<Group>& batch,
+                                                     std::uint32_t limit) {
   LaneMask result;
   for (int k = 0; k < kLanes; ++k) result[k] = batch.rows(0)[k] < limit ? -1 : 0;
   return result;

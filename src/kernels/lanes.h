@@ -55,7 +55,7 @@ inline void transpose(Four (&rows)[4]) {
   rows[3] = shuffled<2, 3, 6, 7>(b, d);
 }
 
-inline Lanes squareRoot(const Lanes& x) {
+[[gnu::always_inline]] inline Lanes squareRoot(const Lanes& x) {
   Lanes result;
   for (int k = 0; k < kLanes; ++k) result[k] = __builtin_sqrt(x[k]);
   return result;
@@ -92,7 +92,7 @@ inline double sum(const Lanes& x) {
 
 /// Horner's scheme; coefficients from the constant on.
 template <std::size_t N>
-inline Lanes polynomial(const double (&coefficients)[N], const Lanes& x) {
+[[gnu::always_inline]] inline Lanes polynomial(const double (&coefficients)[N], const Lanes& x) {
   Lanes result = coefficients[N - 1] - Lanes{};
   for (std::size_t i = N - 1; i-- > 0;) result = coefficients[i] + x * result;
   return result;
@@ -134,7 +134,7 @@ inline Lanes3 cross(const Lanes3& a, const Lanes3& b) {
 inline Lanes3 negative(const Lanes3& a) { return {-a.x, -a.y, -a.z}; }
 
 /// asin(sqrt(h)) / sqrt(h) for h up to 1/4, to 2e-17; a Chebyshev interpolant.
-inline Lanes arcsineRatio(const Lanes& h) {
+[[gnu::always_inline]] inline Lanes arcsineRatio(const Lanes& h) {
   constexpr double kCoefficients[] = {1.0,
                                       0.16666666666664942,
                                       0.07500000000385201,
@@ -152,7 +152,7 @@ inline Lanes arcsineRatio(const Lanes& h) {
 }
 
 /// atan(u) / u for squares of u up to 1/4, to 4e-18; a Chebyshev interpolant.
-inline Lanes arctangentRatio(const Lanes& square) {
+[[gnu::always_inline]] inline Lanes arctangentRatio(const Lanes& square) {
   constexpr double kCoefficients[] = {1.0,
                                       -0.3333333333333278,
                                       0.19999999999875542,
