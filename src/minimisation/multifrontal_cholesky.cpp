@@ -89,7 +89,7 @@ void MultifrontalCholesky::addChild(const Part& part, const Part& child, Front& 
 void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& values) {
   const Part& part = dissection_.parts[p];
   Front& front = fronts_[p];
-  const auto own = static_cast<Eigen::Index>(2 * (part.end - part.first));
+  const auto own = 2 * static_cast<Eigen::Index>(part.end - part.first);
   const auto rest = static_cast<Eigen::Index>(2 * part.boundary.size());
   front.own.setZero(own, own);
   front.below.setZero(rest, own);

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "spherical_springs");
 #ifdef M_ARENA_MAX
   // Each thread that calls come in on would keep the memory of the largest for itself.
-  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_ARENA_MAX, 1);  // NOLINT(concurrency-mt-unsafe): there is no other thread yet
 #endif
   // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });

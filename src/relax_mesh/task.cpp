@@ -31,7 +31,7 @@ mesh::TriangleMesh readSurface(const fs::path& path) {
 }
 
 Eigen::VectorXd weightsOf(const Options& options, const mesh::TriangleMesh& surface) {
-  const Eigen::VectorXd areas = mesh::faceAreas(surface);
+  Eigen::VectorXd areas = mesh::faceAreas(surface);
   if (options.density.empty()) return areas;
   std::ifstream in = core::openToRead(options.density);
   return about(options.density,

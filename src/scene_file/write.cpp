@@ -72,15 +72,15 @@ void writeItems(TextWriter& out, const char* name, const IdTable<Item>& table) {
 
 }  // namespace
 
-void writeScene(std::ostream& stream, const Scene& scene, double time) {
-  TextWriter out(stream);
-  out << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << time;
-  writeItems(out, "particles", scene.particles());
+void writeScene(std::ostream& out, const Scene& scene, double time) {
+  TextWriter text(out);
+  text << "{\"format\": \"" << kSceneFormat << "\",\n\"time\": " << time;
+  writeItems(text, "particles", scene.particles());
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
-    writeItems(out, Spring::kTable, scene.springs<Spring>());
+    writeItems(text, Spring::kTable, scene.springs<Spring>());
   });
-  out << "}\n";
+  text << "}\n";
 }
 
 void writeScene(const std::filesystem::path& path, const Scene& scene, double time) {
