@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fields.h"
@@ -92,17 +93,18 @@ class ItemLists {
     return end;
   }
 
+  /// Of all items, which are no longer here then.
   /// @throw ItemFault, std::invalid_argument as Scene's constructor does.
-  Scene scene() const {
+  Scene scene() {
     SpringIds ids;
     SpringLists springs;
     forEachKind([&](auto kind) {
       using Spring = typename decltype(kind)::type;
-      const auto& list = springs_.get<Spring>();
-      ids.get<Spring>().assign(list.ids.begin(), list.ids.end());
-      springs.get<Spring>().assign(list.items.begin(), list.items.end());
+      auto& list = springs_.get<Spring>();
+      static_cast<std::vector<std::uint32_t>&>(ids.get<Spring>()) = std::move(list.ids);
+      static_cast<std::vector<Spring>&>(springs.get<Spring>()) = std::move(list.items);
     });
-    return Scene(limits_, particles_.ids, particles_.items, ids, std::move(springs));
+    return Scene(limits_, particles_.ids, std::move(particles_.items), ids, std::move(springs));
   }
 
  private:
