@@ -26,6 +26,12 @@ Barrier areaBarrier(double area, double share) {
           1 / (r * r * r) / (share * share)};
 }
 
+/// tan^2(area / 4), by the area.
+Barrier halfSphereBarrier(double area) {
+  const double t = std::tan(area / 4), t2 = t * t;
+  return {t2, 0.5 * t * (1 + t2), (1 + t2) * (1 + 3 * t2) / 8};
+}
+
 /// tan^2(edge / 2) / sqrt 3, by the cosine of the edge.
 Barrier edgeBarrier(const Vector3& a, const Vector3& b) {
   const double scale = 1 / std::sqrt(3.);
@@ -141,7 +147,8 @@ double MapEnergy::valueAt(const std::vector<Vector3>& points) const {
     double sum = areaBarrier(areas[f], shares_[f]).value;
     if (shape_ > 0) {
       sum += shape_ / shares_[f] *
-             (edgeBarrier(a, b).value + edgeBarrier(b, c).value + edgeBarrier(c, a).value);
+             (halfSphereBarrier(areas[f]).value + edgeBarrier(a, b).value +
+              edgeBarrier(b, c).value + edgeBarrier(c, a).value);
     }
     return sum;
   });
@@ -157,7 +164,14 @@ MapEnergy::FaceTerms MapEnergy::termsOf(Eigen::Index face, FaceHessian hessian) 
   }
   const auto area =
       core::tangentCondition(core::SolidAngleSpring(), points, frames, core::Curvature::exact);
-  const Barrier of_area = areaBarrier(area.value, shares_[face]);
+  Barrier of_area = areaBarrier(area.value, shares_[face]);
+  if (shape_ > 0) {
+    const Barrier half_sphere = halfSphereBarrier(area.value);
+    const double weight = shape_ / shares_[face];
+    of_area.value += weight * half_sphere.value;
+    of_area.slope += weight * half_sphere.slope;
+    of_area.bend += weight * half_sphere.bend;
+  }
   const double area_slope = hessian == FaceHessian::gauss_newton ? 0 : of_area.slope;
   FaceTerms terms;
   terms.value = of_area.value;

@@ -40,7 +40,7 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 }  // namespace
 
 Points Mapping::run(const std::optional<Points>& start) {
-  constexpr double kPromising = 10;  // tolerances
+  constexpr double kPromising = 100;  // tolerances
   std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
   Candidates candidates;
   if (start) add(roundedOff(*start), candidates);
@@ -81,13 +81,14 @@ double Mapping::wantedSpread() const {
 /// it is one again.
 std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
   constexpr int kMostIterations = 600;
+  constexpr double kLeastShape = 1e-4;
   const FoldFreeStart start =
       foldFreeStart(level.faces, HalfEdges(level.faces), level.vertex_count, level.shares);
   MapEnergy energy(start.faces, start.shares, start.points, options_.threads);
   MapDescent descent(energy, options_.threads);
   int iterations = 0;
-  for (double shape = 1; iterations < kMostIterations && !(has_map_ && ended_);
-       shape *= kLowering) {
+  const auto given_up = [&] { return iterations >= kMostIterations || (has_map_ && ended_); };
+  for (double shape = 1; shape > kLeastShape && !given_up(); shape *= kLowering) {
     energy.setShape(shape);
     descent.run(FaceHessian::definite, kSlow,
                 [&] { return ++iterations < kMostIterations && (!has_map_ || goOn()); });

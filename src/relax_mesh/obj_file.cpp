@@ -10,9 +10,7 @@
 
 #include "../files.h"
 
-// A reader of our own: no library that both Debian 12 and Ubuntu 20.04 have will do. tinyobjloader
-// came to Debian after Ubuntu 20.04, and reads what is no number as 0. Assimp's importer gives
-// every face vertices of its own, in single precision, and loses the file's order of vertices.
+// A reader of our own: doc/maps.md says what the libraries do with files at fault.
 
 namespace spherical_springs::mesh {
 namespace {

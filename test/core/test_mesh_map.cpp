@@ -80,6 +80,25 @@ TEST(MapEnergy, IsInfiniteAtAFold) {
   EXPECT_EQ(energy.valueAfter(step), std::numeric_limits<double>::infinity());
 }
 
+/// Of which the bottom is nearly half of the sphere.
+TEST(MapEnergy, IsInfiniteAtAFaceOfHalfOfTheSphere) {
+  const TriangleMesh mesh = testing::tetrahedron();
+  const auto at = [&](double depth) {
+    Points points(3, 4);
+    points.col(0) << 0, 0, 1;
+    for (int k = 0; k < 3; ++k) {
+      const double angle = 2 * core::kPi * k / 3;
+      points.col(k + 1) = Vector3(std::cos(angle), std::sin(angle), -depth).normalized();
+    }
+    MapEnergy energy(mesh.faces, faceShares(Eigen::VectorXd::Ones(4)), points, 1);
+    energy.setShape(1);
+    return energy.valueAfter(Eigen::VectorXd::Zero(8));
+  };
+  EXPECT_LT(at(0.3), 100);
+  EXPECT_GT(at(1e-3), 1e4);
+  EXPECT_GT(at(1e-5), 1e8);
+}
+
 TEST(SphereMap, OfFiftyShapesDoesNotFoldAndHasTheAreas) {
   constexpr double kEnough = 0.1;
   for (const auto& shape : testing::fiftyShapes()) {
