@@ -10,6 +10,7 @@
 
 #include "../files.h"
 #include "face_files.h"
+#include "interruption.h"
 #include "obj_file.h"
 #include "spherical_springs/mesh/distortion.h"
 #include "spherical_springs/mesh/sphere_map.h"
@@ -25,10 +26,10 @@ using mesh::FaceDistortion;
 /// Of angle springs beside solid-angle springs: these alone leave some freedom.
 constexpr double kWeakest = 1e-5;
 
-/// Of the map and of its relaxation [s]: 20 in all up to 11,500 vertices, 85 for 50,000.
+/// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 85 for 50,000.
 struct Times {
   explicit Times(Eigen::Index vertices)
-      : map(std::max(10., 1.4e-3 * vertices)), relaxation(std::max(2., 0.3e-3 * vertices)) {}
+      : map(std::max(16., 1.6e-3 * vertices)), relaxation(std::max(1., 0.1e-3 * vertices)) {}
   double map, relaxation;
 };
 
@@ -50,10 +51,10 @@ Points mapOf(const Task& task, double angle_weight) {
   options.angle_weight = angle_weight;
   options.max_time = Times(task.surface.vertices.cols()).map;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  options.go_on = [](double) { return ros::ok(); };
+  options.go_on = [](double) { return !interrupted() && ros::ok(); };
   Points map = task.start ? sphereMap(task.surface, task.shares, *task.start, options)
                           : sphereMap(task.surface, task.shares, options);
-  if (!ros::ok()) throw std::runtime_error("interrupted");
+  throwIfInterrupted();
   return map;
 }
 
@@ -84,7 +85,14 @@ void run(const Options& options) {
   };
   SpringsNode node(options.node);
   const auto begin = ros::WallTime::now();
-  if (task.start) print("before", distortionOf(*task.start), 0);
+  if (task.start) {
+    const FaceDistortion start = distortionOf(*task.start);
+    print("before", start, 0);
+    if (!coversOnce(summary(start))) {
+      std::cout << "the start does not cover the sphere once without folds: passed over"
+                << std::endl;
+    }
+  }
   Points map = mapOf(task, options.angle_weight);
   FaceDistortion faces = distortionOf(map);
   if (!task.start) print("before", faces, secondsSince(begin));
@@ -92,6 +100,7 @@ void run(const Options& options) {
   const Points relaxed =
       node.relax({map, task.surface.faces, task.shares, kWeakest + options.angle_weight},
                  Times(task.surface.vertices.cols()).relaxation);
+  throwIfInterrupted();
   const FaceDistortion after = distortionOf(relaxed);
   if (coversOnce(summary(after)) && summary(after).spread < summary(faces).spread) {
     map = relaxed;
@@ -108,7 +117,9 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   using namespace spherical_springs::relax_mesh;
   try {
-    ros::init(argc, argv, "relax_mesh", ros::init_options::AnonymousName);  // takes its arguments
+    ros::init(argc, argv, "relax_mesh",  // takes its arguments
+              ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+    keepInterruptions();
     const auto options = parseOptions({argv + 1, argv + argc});
     if (options) run(*options);
   } catch (const std::exception& fault) {

@@ -9,9 +9,13 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
+#include <atomic>
 #include <cmath>
 #include <iostream>
 #include <stdexcept>
+#include <thread>
+
+#include "interruption.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
@@ -71,6 +75,26 @@ Points positionsOf(const GetScene::Response& scene) {
   return result;
 }
 
+/// As long as it lives, an interruption is passed on to the node, which is at work elsewhere.
+class CancelOnInterruption {
+ public:
+  explicit CancelOnInterruption(const std::string& service)
+      : thread_([this, service] {
+          for (; !over_; ros::WallDuration(0.02).sleep()) {
+            std_srvs::Trigger cancel;
+            if (interrupted()) ros::service::call(service, cancel);
+          }
+        }) {}
+  ~CancelOnInterruption() {
+    over_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
 }  // namespace
 
 SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(name)) {
@@ -83,7 +107,8 @@ SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(na
   ros::start();
   const auto deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
   while (!ros::service::exists(name_ + "/relax", false)) {
-    if (!ros::ok() || ros::WallTime::now() > deadline) {
+    throwIfInterrupted();
+    if (ros::WallTime::now() > deadline) {
       throw std::runtime_error("no node " + name_ + " answers" + kRemedy);
     }
     ros::WallDuration(0.02).sleep();
@@ -114,7 +139,11 @@ Points SpringsNode::relax(const Network& network, double max_time) {
   request.keep_orientation = true;
   request.max_time = max_time;
   request.tolerance = torqueOf(kPrecision, network);
-  std::cout << name_ << ": " << call<Relax>("relax", request).message << std::endl;
+  const auto relaxed = [&] {
+    const CancelOnInterruption cancel(name_ + "/cancel");
+    return call<Relax>("relax", request);
+  }();
+  std::cout << name_ << ": " << relaxed.message << std::endl;
   return positionsOf(call<GetScene>("get_scene"));
 }
 

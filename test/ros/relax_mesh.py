@@ -21,12 +21,15 @@ class Outcome:
         return {name: float(re.search(name + r' ([-+.e\d]+)', line).group(1)) for name in FIGURES}
 
 
+def command(**options):
+    """command(mesh='a.obj', angle_weight=1) asks for --mesh a.obj --angle-weight 1."""
+    return [roslib.packages.find_node(PACKAGE, 'relax_mesh')[0]] + [
+        text for name, value in options.items()
+        for text in ('--' + name.replace('_', '-'), str(value))]
+
+
 def relax_mesh(environment=None, **options):
-    """Run it to its end; relax_mesh(mesh='a.obj', angle_weight=1) asks for --mesh a.obj
-    --angle-weight 1."""
-    program = roslib.packages.find_node(PACKAGE, 'relax_mesh')[0]
-    arguments = [text for name, value in options.items()
-                 for text in ('--' + name.replace('_', '-'), str(value))]
-    return Outcome(subprocess.run([program] + arguments, stdout=subprocess.PIPE,
+    """Run it to its end."""
+    return Outcome(subprocess.run(command(**options), stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True, timeout=4 * LONG,
                                   env=environment))

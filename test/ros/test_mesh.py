@@ -3,14 +3,20 @@
 import csv
 import os
 import re
+import signal
 import subprocess
 import tempfile
+import threading
 
 import numpy as np
 import rospkg
+import rospy
+from spherical_springs.srv import (
+    AddParticles, AddParticlesResponse, AddSprings, GetScene, Relax, RelaxResponse)
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from node_client import LONG, PACKAGE, NodeTest
-from relax_mesh import relax_mesh
+from relax_mesh import command, relax_mesh
 from scenes import particle, solid_angles
 from shapes import BROKEN, bumpy, mesh, star
 
@@ -96,6 +102,7 @@ class TestShapes(MeshTest):
         outcome = self.run_to_success(mesh=self.write('surface.obj', vertices, faces),
                                       sphere=self.write('start.obj', start, faces))
         self.assertEqual(len(faces), outcome.figures('before')['folded'])
+        self.assertIn('without folds: passed over', outcome.output)
         self.assert_is_map(faces, mesh.areas(vertices, faces), outcome)
 
     def test_density(self):
@@ -220,6 +227,56 @@ class TestRefusals(MeshTest):
         environment = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
         self.assertRegex(self.refusal(mesh=surface, environment=environment),
                          'no ROS master answers at http://localhost:1')
+
+
+class EndlessNode:
+    """Stands for a node whose relaxation ends only when it is cancelled."""
+
+    def __init__(self, name):
+        self.relaxing, self.cancelled = threading.Event(), threading.Event()
+        self.services = [rospy.Service(name + '/' + service, kind, answer)
+                         for service, kind, answer in (
+            ('set_running', SetBool, lambda _: SetBoolResponse(success=True)),
+            ('clear', Trigger, lambda _: TriggerResponse(success=True)),
+            ('add_particles', AddParticles, lambda request: AddParticlesResponse(
+                success=True, ids=range(len(request.particles)))),
+            ('add_springs', AddSprings, lambda _: {'success': True}),
+            ('get_scene', GetScene, lambda _: {'success': True}),
+            ('relax', Relax, self.relax),
+            ('cancel', Trigger, self.cancel))]
+
+    def relax(self, _):
+        self.relaxing.set()
+        return RelaxResponse(success=self.cancelled.wait(2 * LONG))
+
+    def cancel(self, _):
+        self.cancelled.set()
+        return TriggerResponse(success=True)
+
+    def shutdown(self):
+        for service in self.services:
+            service.shutdown()
+
+
+class TestInterruption(MeshTest):
+    def test_relaxation_is_cancelled_and_nothing_written(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        surface = self.write('surface.obj', *bumpy(1))
+        for which in (signal.SIGINT, signal.SIGTERM):
+            node.relaxing.clear()
+            node.cancelled.clear()
+            process = subprocess.Popen(
+                command(mesh=surface, output=self.path('sphere.obj'), uv=self.path('uv.obj'),
+                        node='/endless'), stderr=subprocess.PIPE, text=True)
+            self.assertTrue(node.relaxing.wait(LONG))
+            self.assertFalse(node.cancelled.is_set())
+            process.send_signal(which)
+            error = process.communicate(timeout=LONG)[1]
+            self.assertTrue(node.cancelled.is_set())
+            self.assertEqual((1, 'error: interrupted; no file has been written\n'),
+                             (process.returncode, error))
+            self.assertEqual(['surface.obj'], os.listdir(self.directory))
 
 
 class TestNode(MeshTest):
