@@ -12,6 +12,7 @@
 #include "face_files.h"
 #include "interruption.h"
 #include "obj_file.h"
+#include "progress_line.h"
 #include "spherical_springs/mesh/distortion.h"
 #include "spherical_springs/mesh/sphere_map.h"
 #include "springs_node.h"
@@ -51,7 +52,11 @@ Points mapOf(const Task& task, double angle_weight) {
   options.angle_weight = angle_weight;
   options.max_time = Times(task.surface.vertices.cols()).map;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  options.go_on = [](double) { return !interrupted() && ros::ok(); };
+  ProgressLine progress("mapping");
+  options.go_on = [&](double fraction) {
+    progress.show(fraction);
+    return !interrupted() && ros::ok();
+  };
   Points map = task.start ? sphereMap(task.surface, task.shares, *task.start, options)
                           : sphereMap(task.surface, task.shares, options);
   throwIfInterrupted();

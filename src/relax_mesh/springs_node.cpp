@@ -2,10 +2,12 @@
 
 #include <ros/master.h>
 #include <ros/service.h>
+#include <ros/spinner.h>
 #include <spherical_springs/AddParticles.h>
 #include <spherical_springs/AddSprings.h>
 #include <spherical_springs/GetScene.h>
 #include <spherical_springs/Relax.h>
+#include <spherical_springs/Status.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
@@ -16,6 +18,7 @@
 #include <thread>
 
 #include "interruption.h"
+#include "progress_line.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
@@ -95,6 +98,24 @@ class CancelOnInterruption {
   std::thread thread_;
 };
 
+/// As long as it lives, what the node says of its relaxation is shown.
+class ShowProgress {
+ public:
+  explicit ShowProgress(const std::string& topic)
+      : status_(node_.subscribe<Status>(topic, 1, [this](const Status::ConstPtr& status) {
+          if (status->state == "relaxing") line_.show(status->relax_progress);
+        })) {
+    spinner_.start();
+  }
+  ~ShowProgress() { spinner_.stop(); }
+
+ private:
+  ros::NodeHandle node_;
+  ProgressLine line_{"relaxing"};
+  ros::Subscriber status_;
+  ros::AsyncSpinner spinner_{1};
+};
+
 }  // namespace
 
 SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(name)) {
@@ -140,6 +161,7 @@ Points SpringsNode::relax(const Network& network, double max_time) {
   request.max_time = max_time;
   request.tolerance = torqueOf(kPrecision, network);
   const auto relaxed = [&] {
+    const ShowProgress progress(name_ + "/status");
     const CancelOnInterruption cancel(name_ + "/cancel");
     return call<Relax>("relax", request);
   }();

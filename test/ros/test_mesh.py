@@ -2,7 +2,9 @@
 
 import csv
 import os
+import pty
 import re
+import select
 import signal
 import subprocess
 import tempfile
@@ -11,6 +13,7 @@ import threading
 import numpy as np
 import rospkg
 import rospy
+from spherical_springs.msg import Status
 from spherical_springs.srv import (
     AddParticles, AddParticlesResponse, AddSprings, GetScene, Relax, RelaxResponse)
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
@@ -277,6 +280,28 @@ class TestInterruption(MeshTest):
             self.assertEqual((1, 'error: interrupted; no file has been written\n'),
                              (process.returncode, error))
             self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+
+class TestProgress(MeshTest):
+    def test_a_terminal_shows_how_far_it_has_come(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        status = rospy.Publisher('/endless/status', Status, queue_size=1, latch=True)
+        self.addCleanup(status.unregister)
+        status.publish(state='relaxing', relax_progress=0.43)
+        terminal, its_other_end = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        process = subprocess.Popen(
+            command(mesh=self.write('surface.obj', *bumpy(1)), output=self.path('sphere.obj'),
+                    node='/endless'), stdout=subprocess.DEVNULL, stderr=its_other_end)
+        os.close(its_other_end)
+        shown = ''
+        while 'relaxing ... 43 %' not in shown:
+            self.assertTrue(select.select([terminal], [], [], LONG)[0], shown)
+            shown += os.read(terminal, 1000).decode()
+        self.assertRegex(shown, r'mapping \.\.\. \d+ %\r\x1b\[K')
+        process.send_signal(signal.SIGINT)
+        process.wait(LONG)
 
 
 class TestNode(MeshTest):
