@@ -1,6 +1,6 @@
-// The report, transcribed to the letter: quaternions, logarithms, acos, explicit Euler. It shares no
-// code with the package, so that one can be held against the other. Angelidis, "Spherical Springs",
-// OUCS-2004-01; the numbers are those of its sections and equations.
+// The report, transcribed to the letter: quaternions, logarithms, acos, explicit Euler. It shares
+// no code with the package, so that one can be held against the other. Angelidis, "Spherical
+// Springs", OUCS-2004-01; the numbers are those of its sections and equations.
 #pragma once
 
 #include <array>

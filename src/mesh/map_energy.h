@@ -20,8 +20,8 @@ enum class FaceHessian { exact, definite, gauss_newton };
 ///   (r + 1/r - 2) / 2
 ///     + shape (tan^2(area / 4) + sum over edges of tan^2(edge / 2) / sqrt 3) / share,
 /// which is infinite at a fold, at a face of half of the sphere and at an edge of length pi.
-/// Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the n-th vertex, in an order of its
-/// own.
+/// Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the n-th vertex, in an order of
+/// its own.
 class MapEnergy {
  public:
   using Hessian = core::Blocks<double, 2>;

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "minimisation/conjugate_gradients.h"
-#include "minimisation/multigrid.h"
 #include "minimisation/multifrontal_cholesky.h"
+#include "minimisation/multigrid.h"
 #include "relaxation_scenes.h"
 
 namespace spherical_springs::core {
