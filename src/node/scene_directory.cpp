@@ -15,6 +15,10 @@ SceneDirectory::SceneDirectory(const std::string& directory) : directory_(direct
                  directory.substr(std::min<std::size_t>(2, directory.size()));
   }
   directory_ = fs::weakly_canonical(fs::absolute(directory_));
+  if (fs::exists(directory_) && !fs::is_directory(directory_)) {
+    throw std::invalid_argument("parameter ~scene_directory is '" + directory +
+                                "'; allowed: a directory, or a name that is free");
+  }
 }
 
 fs::path SceneDirectory::inside(const std::string& path) const {

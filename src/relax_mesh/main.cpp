@@ -105,7 +105,6 @@ void run(const Options& options) {
   const Points relaxed =
       node.relax({map, task.surface.faces, task.shares, kWeakest + options.angle_weight},
                  Times(task.surface.vertices.cols()).relaxation);
-  throwIfInterrupted();
   const FaceDistortion after = distortionOf(relaxed);
   if (coversOnce(summary(after)) && summary(after).spread < summary(faces).spread) {
     map = relaxed;

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <iostream>
 #include <stdexcept>
@@ -39,11 +40,33 @@ po::options_description described(Options& options) {
   return all;
 }
 
-void requireDirectoryFor(const char* option, const fs::path& path) {
-  if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
-    throw std::invalid_argument(std::string(option) + " is " + path.string() +
-                                "; allowed: a file in a directory that exists");
+[[noreturn]] void refuse(const char* option, const fs::path& path, const char* allowed) {
+  throw std::invalid_argument(std::string(option) + " is '" + path.string() +
+                              "'; allowed: " + allowed);
+}
+
+/// What is to be written, none of it over anything that is read or written as well.
+void requireWritable(const Options& options) {
+  const auto whole = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path)); };
+  std::vector<fs::path> taken;
+  for (const fs::path* read : {&options.mesh, &options.sphere, &options.density}) {
+    if (!read->empty()) taken.push_back(whole(*read));
   }
+  const auto require = [&](const char* option, const fs::path& path) {
+    if (!path.has_filename() || (fs::exists(path) && !fs::is_regular_file(path))) {
+      refuse(option, path, "the name of a file");
+    }
+    if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
+      refuse(option, path, "a file in a directory that exists");
+    }
+    if (std::find(taken.begin(), taken.end(), whole(path)) != taken.end()) {
+      refuse(option, path, "a file of its own, not one that another option names");
+    }
+    taken.push_back(whole(path));
+  };
+  require("--output", options.output);
+  if (!options.uv.empty()) require("--uv", options.uv);
+  if (!options.metrics.empty()) require("--metrics", options.metrics);
 }
 
 }  // namespace
@@ -63,9 +86,7 @@ std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
     throw std::invalid_argument(std::string(fault.what()) + "; see relax_mesh --help");
   }
   core::requireInside({0, 1e6, "0 to 1e6"}, options.angle_weight, "--angle-weight");
-  requireDirectoryFor("--output", options.output);
-  requireDirectoryFor("--uv", options.uv);
-  requireDirectoryFor("--metrics", options.metrics);
+  requireWritable(options);
   return options;
 }
 

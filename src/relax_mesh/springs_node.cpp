@@ -143,6 +143,7 @@ typename Service::Response SpringsNode::call(const char* service,
   const std::string full_name = name_ + "/" + service;
   auto to_send = request;
   if (!ros::service::call(full_name, to_send, response)) {
+    throwIfInterrupted();
     throw std::runtime_error(full_name + " does not answer");
   }
   if (!response.success) throw std::runtime_error(full_name + ": " + response.message);
@@ -165,8 +166,14 @@ Points SpringsNode::relax(const Network& network, double max_time) {
     const CancelOnInterruption cancel(name_ + "/cancel");
     return call<Relax>("relax", request);
   }();
+  throwIfInterrupted();
   std::cout << name_ << ": " << relaxed.message << std::endl;
-  return positionsOf(call<GetScene>("get_scene"));
+  const auto scene = call<GetScene>("get_scene");
+  if (scene.particle_ids != ids) {
+    throw std::runtime_error("another client has changed the scene of " + name_ +
+                             " meanwhile; relax_mesh needs a node to itself");
+  }
+  return positionsOf(scene);
 }
 
 }  // namespace spherical_springs::relax_mesh

@@ -28,7 +28,8 @@ class SpringsNode {
   /// Relaxes the network in place of the scene that the node has, without folds, and returns where
   /// its vertices come to. The node is left paused.
   /// @param max_time wall [s]
-  /// @throw std::runtime_error for a call that fails or is refused, with the node's reason.
+  /// @throw std::runtime_error for a call that fails or is refused, with the node's reason, after
+  /// an interruption, and where the scene at the end is not the one that was sent.
   Points relax(const Network& network, double max_time);
 
  private:

@@ -118,7 +118,7 @@ class Fields {
     if (field == nullptr) return;
     if (!field->is_list) refuse(name, field->value, allowed);
     if (field->list.size() != size) {
-      refuse(name, field->json(), (std::to_string(size) + " of them").c_str());
+      refuse(name, field->json(), ("a list of " + std::to_string(size)).c_str());
     }
     use(field->list);
     field->taken = true;

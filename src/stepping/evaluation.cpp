@@ -27,7 +27,9 @@ template <class Work>
 void Evaluation::forEachPatch(const Work& work) const {
   const auto& patches = layout_->patches();
   const int threads = patches.size() > 1 ? system_.threads() : 1;
-  forOnThreads(patches.size(), threads, [&](std::ptrdiff_t p) { work(p, patches[p]); });
+  forOnThreads(patches.size(), threads, [&](std::ptrdiff_t p) {
+    if (patches[p].particle_count > 0) work(p, patches[p]);
+  });
 }
 
 PotentialEnergies Evaluation::potential() const {

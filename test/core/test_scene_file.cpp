@@ -110,7 +110,7 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
       {head + R"("particles": 3})", "the scene.particles is 3; allowed: a list"},
       {head + R"("particles": [3]})", "particles[0] is not an object"},
       {head + R"("particles": [{"position": [1, 0]}]})",
-       "particles[0].position is [1,0]; allowed: 3 of them"},
+       "particles[0].position is [1,0]; allowed: a list of 3"},
       {head + R"("particles": [{"position": [1, 0, "x"]}]})",
        "particles[0].position is [1,0,\"x\"]; allowed: three numbers"},
       {head + R"("particles": [{"position": [0, 0, 0]}]})",
@@ -223,6 +223,18 @@ TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
   EXPECT_EQ(fault_of(directory_), "cannot read " + directory_.string() + ": not a file");
   EXPECT_THROW(writeScene(directory_ / "missing" / "scene.json", Scene(), 0), std::runtime_error);
   EXPECT_TRUE(fs::is_empty(directory_));
+}
+
+TEST_F(SceneFiles, TakeTheirPlaceOfFilesAlone) {
+  const fs::path pipe = directory_ / "pipe", link = directory_ / "link";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(writeScene(pipe, Scene(), 0), std::runtime_error);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+
+  fs::create_symlink(path_, link);
+  writeScene(link, Scene(), 0);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::is_regular_file(path_));
 }
 
 }  // namespace

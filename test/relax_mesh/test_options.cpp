@@ -51,8 +51,19 @@ TEST(Options, AreRefusedWithAReason) {
   EXPECT_NE("taken", reasonAgainst({"--angle-weight", "much"}));
   EXPECT_EQ("--angle-weight is -1; allowed: 0 to 1e6", reasonAgainst({"--angle-weight=-1"}));
   EXPECT_EQ("--angle-weight is nan; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "nan"}));
-  EXPECT_EQ("--uv is /nowhere/u.obj; allowed: a file in a directory that exists",
+  EXPECT_EQ("--uv is '/nowhere/u.obj'; allowed: a file in a directory that exists",
             reasonAgainst({"--uv", "/nowhere/u.obj"}));
+  EXPECT_EQ("--uv is '/dev/null'; allowed: the name of a file",
+            reasonAgainst({"--uv", "/dev/null"}));
+  EXPECT_EQ("--uv is '.'; allowed: the name of a file", reasonAgainst({"--uv", "."}));
+  EXPECT_EQ("--uv is 'u/'; allowed: the name of a file", reasonAgainst({"--uv", "u/"}));
+}
+
+TEST(Options, NameNothingTwice) {
+  const std::string allowed = "; allowed: a file of its own, not one that another option names";
+  EXPECT_EQ("--uv is './b.obj'" + allowed, reasonAgainst({"--uv", "./b.obj"}));
+  EXPECT_EQ("--metrics is 'a.obj'" + allowed, reasonAgainst({"--metrics", "a.obj"}));
+  EXPECT_EQ("--output is 'b.obj'" + allowed, reasonAgainst({"--density", "b.obj"}));
 }
 
 }  // namespace
