@@ -44,10 +44,9 @@ std::ifstream openToRead(const fs::path& path) {
   return in;
 }
 
-void replaceFile(const fs::path& name, const std::function<void(std::ostream&)>& write) {
-  const fs::path path = fs::is_symlink(name) ? name.parent_path() / fs::read_symlink(name) : name;
+void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   if (fs::exists(path) && !fs::is_regular_file(path)) {
-    throw std::runtime_error("cannot write " + name.string() + ": not a file");
+    throw std::runtime_error("cannot write " + path.string() + ": not a file");
   }
   const fs::path part = partOf(path);
   try {

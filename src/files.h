@@ -14,11 +14,11 @@ namespace spherical_springs::core {
 /// @throw std::runtime_error for what is not a regular file, or cannot be read.
 std::ifstream openToRead(const std::filesystem::path& path);
 
-/// Writes a file beside `name`, puts it on the disk, and gives it that name: what was there before
-/// stays until then, and for good where anything fails. A link stays, and what it leads to changes.
+/// Writes a file beside `path`, puts it on the disk, and gives it that name: what was there before
+/// stays until then, and for good where anything fails.
 /// @throw std::runtime_error for what is there and no regular file, where the file cannot be
 /// written, or what `write` throws.
-void replaceFile(const std::filesystem::path& name,
+void replaceFile(const std::filesystem::path& path,
                  const std::function<void(std::ostream&)>& write);
 
 }  // namespace spherical_springs::core

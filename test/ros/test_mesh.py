@@ -219,7 +219,7 @@ class TestRefusals(MeshTest):
                 ({'sphere': self.write('reverse.obj', vertices, faces[::-1])}, 'faces are not those'),
                 ({'sphere': self.write('zero.obj', 0 * vertices, faces)}, 'vertex 0 is at'),
                 ({'angle_weight': 'nan'}, 'angle-weight is nan; allowed: 0 to'),
-                ({'output': '/nowhere/x.obj'}, '--output is /nowhere/x.obj; allowed: '),
+                ({'output': '/nowhere/x.obj'}, "--output is '/nowhere/x.obj'; allowed: "),
                 ({'colour': 'red'}, "'--colour'"),
                 ({'node': 'nobody'}, 'no node /nobody answers')):
             with self.subTest(options=options):
