@@ -41,7 +41,7 @@ double squaredNormExcess(const Vector3& p) {
 
 Vector3 sumOfUnits(const Vector3& a, const Vector3& b) {
   constexpr double kNearlyAntipodal = 0.01;
-  const Vector3 sum = a + b;
+  Vector3 sum = a + b;
   if (sum.squaredNorm() > kNearlyAntipodal) return sum;
   return sum - 0.5 * (squaredNormExcess(a) * a + squaredNormExcess(b) * b);
 }
