@@ -28,10 +28,10 @@ struct PotentialEnergies : PerKind<EnergyOf> {
   double total() const;
 };
 
-/// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
-/// of their ids, and springs name particles by index.
 class Layout;
 
+/// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
+/// of their ids, and springs name particles by index.
 class System {
  public:
   struct Options {

@@ -46,7 +46,7 @@ ModelMinimum ModelSolver::solve(InPrecision<Real>& in, const TangentEnergy& ener
 /// Whether a factorisation can take over from the multigrid, and is there now.
 bool ModelSolver::tryCholesky() {
   constexpr std::size_t kMostRows = 50'000;
-  constexpr double kMostWork = 3e10;  // multiplications; some ten seconds
+  constexpr double kMostWork = 3e10;  // multiplications; seconds each time
   if (cholesky_refused_) return false;
   cholesky_refused_ = true;
   if (pattern_.rows() > kMostRows) return false;

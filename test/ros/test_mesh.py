@@ -233,7 +233,8 @@ class TestRefusals(MeshTest):
 
 
 class EndlessNode:
-    """Stands for a node whose relaxation ends only when it is cancelled."""
+    """Stands for a node whose relaxation ends only when it is cancelled, and whose scene is then
+    empty."""
 
     def __init__(self, name):
         self.relaxing, self.cancelled = threading.Event(), threading.Event()
@@ -280,6 +281,18 @@ class TestInterruption(MeshTest):
             self.assertEqual((1, 'error: interrupted; no file has been written\n'),
                              (process.returncode, error))
             self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+
+class TestOtherClients(MeshTest):
+    def test_who_changes_the_scene_meanwhile_is_noticed(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        node.cancelled.set()
+        outcome = relax_mesh(mesh=self.write('surface.obj', *bumpy(1)), node='/endless',
+                             output=self.path('sphere.obj'))
+        self.assertEqual((1, 'error: another client has changed the scene of /endless meanwhile; '
+                          'relax_mesh needs a node to itself'), (outcome.code, outcome.error))
+        self.assertEqual(['surface.obj'], os.listdir(self.directory))
 
 
 class TestProgress(MeshTest):

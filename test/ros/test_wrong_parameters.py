@@ -54,3 +54,7 @@ class TestWrongParameters(unittest.TestCase):
             file.write('{"format": "spherical_springs scene 1",\n "particles": [{"mass": -1}]}')
             file.flush()
             self.assertEqual([], faults('scene', [file.name]))
+
+    def test_a_scene_directory_that_is_a_file(self):
+        with tempfile.NamedTemporaryFile() as file:
+            self.assertEqual([], faults('scene_directory', [file.name]))
