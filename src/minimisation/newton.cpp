@@ -92,10 +92,14 @@ double Newton::scaledLength(const Eigen::VectorXd& step) const {
   return std::sqrt(squared);
 }
 
-/// Goes on from where conjugate gradients met negative curvature to the radius; after T. Steihaug,
-/// SIAM J. Numer. Anal. 20 (1983).
+/// Goes on from where conjugate gradients met negative curvature to the radius, no particle further
+/// than its springs reach; after T. Steihaug, SIAM J. Numer. Anal. 20 (1983).
 void Newton::goDownward(ModelMinimum& minimum) const {
+  const Eigen::VectorXd reach = energy_.reach();
   double length = kLongestMove / longestMove(minimum.downward);
+  for (Eigen::Index i = 0; i < reach.size(); ++i) {
+    length = std::min(length, reach[i] / minimum.downward.segment<2>(2 * i).norm());
+  }
   if (radius_ < kInfinity) {
     const double room = std::pow(radius_, 2) - std::pow(scaledLength(minimum.step), 2);
     length = std::min(length, std::sqrt(std::max(room, 0.)) / scaledLength(minimum.downward));
@@ -120,13 +124,22 @@ double Newton::allowedShare(const Eigen::VectorXd& step) {
   return share;
 }
 
+/// Whether the last step was a good one. Negative curvature then is likely to be of a few places
+/// only, such as folded triangles of a large mesh, which the definite part of the Hessian mends
+/// while the rest goes on.
+bool Newton::advances() const {
+  constexpr double kMuch = 0.5;
+  return iterations_ > 0 && energy_.maxTorque() < kMuch * earlier_torque_;
+}
+
 bool Newton::iterate() {
   constexpr int kMostAttempts = 40;
   if (creeps()) return false;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     ModelMinimum found = minimum(energy_.gradient(), tolerance());
     if (found.indefinite && model_ == Model::exact) {
-      model_ = Model::indefinite;
+      model_ = advances() ? Model::definite : Model::indefinite;
+      calm_iterations_ = 0;
       evaluate();
       continue;
     }
@@ -145,6 +158,7 @@ bool Newton::iterate() {
 Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   const double value = energy_.value();
   const double gradient = energy_.gradient().norm();
+  const double torque = energy_.maxTorque();
   const double expected = energy_.expectedDrop(minimum.step);
   const double length = scaledLength(minimum.step);
   // Where the energy cannot resolve the drop any more, the gradient still can.
@@ -171,6 +185,7 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
       radius_ = length / 2;
     }
     earlier_gradient_ = gradient;
+    earlier_torque_ = torque;
     ++iterations_;
     return Trial::accepted;
   }

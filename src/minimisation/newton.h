@@ -48,6 +48,7 @@ class Newton : public Descent {
   void evaluate();
   ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
   double tolerance() const;
+  bool advances() const;
   double scaledLength(const Eigen::VectorXd& step) const;
   void goDownward(ModelMinimum& minimum) const;
   void keepInside(Eigen::VectorXd& step);
@@ -70,6 +71,7 @@ class Newton : public Descent {
   int iterations_ = 0;
   int calm_iterations_ = 0;  // since negative curvature
   double earlier_gradient_ = 0;
+  double earlier_torque_ = 0;
   double earlier_value_ = 0;
 };
 

@@ -317,6 +317,20 @@ double TangentEnergy::maxTorque() const {
   return unit_ * std::sqrt(largest);
 }
 
+Eigen::VectorXd TangentEnergy::reach() const {
+  const Graph& graph = pattern_.graph;
+  Eigen::VectorXd longest(freeCount());
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t i) {
+    double squared = 0;
+    for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const Vector3& other = places_[graph.neighbours[e]].point;
+      squared = std::max(squared, (other - places_[i].point).squaredNorm());
+    }
+    longest[i] = squared > 0 ? std::sqrt(squared) : 1;
+  });
+  return longest;
+}
+
 Points TangentEnergy::positions() const {
   Points result(3, particles_.size());
   for (std::size_t n = 0; n < particles_.size(); ++n) result.col(particles_[n]) = places_[n].point;

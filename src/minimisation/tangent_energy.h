@@ -66,6 +66,10 @@ class TangentEnergy {
   /// Largest gradient of a free particle, which is its torque [N m].
   double maxTorque() const;
 
+  /// For each free particle the longest chord to another that a spring joins it with, or 1 where
+  /// there is none.
+  Eigen::VectorXd reach() const;
+
   /// Of all particles, in the order of their ids.
   Points positions() const;
   /// The tangent vectors by which a step moves the particles, in the same order.
