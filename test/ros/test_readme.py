@@ -1,4 +1,4 @@
-"""Every command of the README, in its order, as pasted."""
+"""Every command of the README, in its order, as pasted; and its figures."""
 
 import os
 import re
@@ -16,11 +16,25 @@ ROOT = rospkg.RosPack().get_path(PACKAGE)
 NOT_RUN = {'scripts/test': 'it runs this test'}
 
 
+def text_of(path):
+    with open(os.path.join(ROOT, path)) as file:
+        return file.read()
+
+
 def commands():
-    with open(os.path.join(ROOT, 'README.md')) as file:
-        blocks = re.findall(r'^```\n(.*?)^```$', file.read(), re.MULTILINE | re.DOTALL)
+    blocks = re.findall(r'^```\n(.*?)^```$', text_of('README.md'), re.MULTILINE | re.DOTALL)
     lines = [line.split(' #')[0].strip() for block in blocks for line in block.splitlines()]
     return [line for line in lines if line]
+
+
+def table_of_stepping(path):
+    """The first, with a row for each size."""
+    return re.search(r'^\| particles \| springs \|.*?\n\n', text_of(path), re.M | re.DOTALL)[0]
+
+
+class TestTables(unittest.TestCase):
+    def test_stepping_is_as_the_benchmark_has_it(self):
+        self.assertEqual(table_of_stepping('benchmark/README.md'), table_of_stepping('README.md'))
 
 
 class TestReadme(unittest.TestCase):
