@@ -110,13 +110,19 @@ Energies toMessage(const core::Energies& energies) {
 geometry_msgs::Pose toPose(const core::Vector3& p, double radius) {
   geometry_msgs::Pose pose;
   setVector(radius * p, pose.position);
+  auto& turn = pose.orientation;
+  if (p.z() >= 0) {
+    turn.w = std::sqrt((1 + p.z()) / 2);
+    const double share = 0.5 / turn.w;  // of the sine of the whole angle
+    turn.x = -share * p.y();
+    turn.y = share * p.x();
+    return pose;
+  }
   const double across = std::sqrt(p.x() * p.x() + p.y() * p.y());
-  const double larger = std::sqrt((1 + std::abs(p.z())) / 2);  // of the half angle's two
-  const double smaller = across / (2 * larger);
-  const double sine = p.z() >= 0 ? smaller : larger;
-  pose.orientation.w = p.z() >= 0 ? larger : smaller;
-  pose.orientation.x = across > 0 ? -sine * p.y() / across : sine;
-  pose.orientation.y = across > 0 ? sine * p.x() / across : 0;
+  const double sine = std::sqrt((1 - p.z()) / 2);
+  turn.w = across / (2 * sine);
+  turn.x = across > 0 ? -sine * p.y() / across : sine;
+  turn.y = across > 0 ? sine * p.x() / across : 0;
   return pose;
 }
 

@@ -1,10 +1,9 @@
 #include "publisher.h"
 
-#include <geometry_msgs/PoseArray.h>
-
 #include <algorithm>
 
 #include "conversion.h"
+#include "poses.h"
 #include "spherical_springs/measures.h"
 #include "surviving.h"
 
@@ -61,13 +60,9 @@ void Publisher::publishSample() {
   const auto snapshot = runner_.snapshot();
   const ros::Time stamp = ros::Time::now();
   if (to_poses) {
-    geometry_msgs::PoseArray message;
+    Poses message = {{}, snapshot.state.positions, parameters_.radius};
     message.header.stamp = stamp;
     message.header.frame_id = parameters_.frame_id;
-    message.poses.reserve(snapshot.state.positions.cols());
-    for (Eigen::Index i = 0; i < snapshot.state.positions.cols(); ++i) {
-      message.poses.push_back(toPose(snapshot.state.positions.col(i), parameters_.radius));
-    }
     poses_.publish(message);
   }
   if (to_energies) {
