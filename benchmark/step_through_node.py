@@ -3,7 +3,8 @@
 
 For each scene file (stepping_benchmark --write-scene FILE LEVEL makes one): ~load_scene, ~step,
 ~get_scene, ~save_scene, ~add_springs of all its springs again, and the share of a core that
-publishing ~poses at 100 Hz takes. Seconds, but for ~step.
+the node takes while paused, without and with a subscriber to ~poses at 100 Hz. Seconds, but for
+~step.
 """
 import os
 import statistics
@@ -19,7 +20,8 @@ from spherical_springs.srv import (AddParticles, AddSprings, GetScene, LoadScene
 from std_srvs.srv import Trigger
 
 COLUMNS = ("particles", "springs", "~step [ns a spring]", "~load_scene", "~save_scene",
-           "~get_scene", "~add_springs", "~poses at 100 Hz [share of a core]")
+           "~get_scene", "~add_springs", "nobody listening [share of a core]",
+           "~poses at 100 Hz [share of a core]")
 FRESH = "fresh.json"
 
 
@@ -37,23 +39,35 @@ def step_time(node, springs, seconds, runs):
                              for _ in range(runs)) / steps / springs * 1e9
 
 
-def processor_time():
-    """Seconds that the node has had of all cores."""
+def node_pid():
     uri = rosgraph.Master("/benchmark").lookupNode("/" + NAME)
-    pid = xmlrpc.client.ServerProxy(uri).getPid("/benchmark")[2]
-    with open("/proc/%d/stat" % pid) as file:
-        fields = file.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return xmlrpc.client.ServerProxy(uri).getPid("/benchmark")[2]
 
 
-def poses_share(seconds):
-    """Share of a core for a subscriber that takes the messages as they are."""
+def processor_time(pid):
+    """Seconds that the threads of a process have had of all cores, finer than its ticks are."""
+    tasks = "/proc/%d/task/" % pid
+    nanoseconds = 0
+    for task in os.listdir(tasks):
+        with open(tasks + task + "/schedstat") as file:
+            nanoseconds += int(file.read().split()[0])
+    return nanoseconds / 1e9
+
+
+def share_of_a_core(seconds):
+    """What the node takes."""
+    pid = node_pid()
+    before = processor_time(pid)
+    time.sleep(seconds)
+    return (processor_time(pid) - before) / seconds
+
+
+def share_with_poses(seconds):
+    """What it takes with a subscriber that leaves the messages as they are."""
     subscriber = rospy.Subscriber(NAME + "/poses", rospy.AnyMsg, lambda message: None,
                                   queue_size=1)
     rospy.wait_for_message(NAME + "/poses", PoseArray, 30)
-    before = processor_time()
-    time.sleep(seconds)
-    share = (processor_time() - before) / seconds
+    share = share_of_a_core(seconds)
     subscriber.unregister()
     return share
 
@@ -65,7 +79,8 @@ def measure(node, path, arguments):
     springs = len(scene.angle_springs) + len(scene.solid_angle_springs)
     step = step_time(node, springs, arguments.seconds, arguments.runs)
     save, _ = timed(node.call, "save_scene", SaveScene, path=FRESH)
-    share = poses_share(arguments.seconds)
+    idle = share_of_a_core(5 * arguments.seconds)
+    share = share_with_poses(5 * arguments.seconds)
     node.call("clear", Trigger)
     ids = node.call("add_particles", AddParticles, particles=scene.particles).ids
     new_ids = dict(zip(scene.particle_ids, ids))
@@ -74,7 +89,7 @@ def measure(node, path, arguments):
     add, _ = timed(node.call, "add_springs", AddSprings, angle_springs=scene.angle_springs,
                    solid_angle_springs=scene.solid_angle_springs)
     return (len(scene.particles), springs, "%.2f" % step, "%.3g" % load, "%.3g" % save,
-            "%.3g" % get, "%.3g" % add, "%.3f" % share)
+            "%.3g" % get, "%.3g" % add, "%.3f" % idle, "%.3f" % share)
 
 
 def main():
