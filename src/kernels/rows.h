@@ -13,7 +13,7 @@ using spherical_springs::core::kRowLength;
 /// `at(k)` is the row of lane k.
 template <class RowAt>
 [[gnu::always_inline]] inline Lanes3 lanesFromRows(const RowAt& at) {
-  Lanes3 result;
+  Lanes3 result = {};
   for (int part = 0; part < kLanes / 4; ++part) {
     Four rows[4];
     for (int k = 0; k < 4; ++k) rows[k] = at(4 * part + k);
@@ -39,7 +39,7 @@ template <class Use>
 
 template <class RowAt>
 [[gnu::always_inline]] inline Lanes3 lanesFromRows(const RowAt& at) {
-  Lanes3 result;
+  Lanes3 result = {};
   for (int k = 0; k < kLanes; ++k) {
     const Four row = at(k);
     result.x[k] = row[0];
