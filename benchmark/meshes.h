@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "spherical_springs/scene.h"
@@ -60,17 +62,57 @@ inline Mesh subdivided(const Mesh& mesh) {
   return result;
 }
 
+/// Cuts every face into n^2. A vertex is known by its shares of the corners that it lies between.
+inline Mesh divided(const Mesh& mesh, std::uint32_t n) {
+  using Share = std::pair<std::uint32_t, std::uint32_t>;  // how much, and of which corner
+  std::map<std::array<Share, 3>, std::uint32_t> known;
+  Mesh result;
+  for (const auto& [a, b, c] : mesh.faces) {
+    const auto vertex = [&, a = a, b = b, c = c](std::uint32_t i, std::uint32_t j) {
+      std::array<Share, 3> shares = {{{n - i - j, a}, {i, b}, {j, c}}};
+      Vector3 sum = Vector3::Zero();
+      for (auto& [share, corner] : shares) {
+        sum += share * mesh.vertices[corner];
+        if (share == 0) corner = 0;
+      }
+      std::sort(shares.begin(), shares.end());
+      const auto [found, is_new] = known.try_emplace(shares, result.vertices.size());
+      if (is_new) result.vertices.push_back(sum.normalized());
+      return found->second;
+    };
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; i + j < n; ++j) {
+        result.faces.push_back({vertex(i, j), vertex(i + 1, j), vertex(i, j + 1)});
+        if (i + j + 1 == n) continue;
+        result.faces.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
+      }
+    }
+  }
+  return result;
+}
+
+inline void addEdges(Mesh& mesh) {
+  for (const auto& face : mesh.faces) {
+    for (int i = 0; i < 3; ++i) {
+      if (face[i] < face[(i + 1) % 3]) mesh.edges.push_back({face[i], face[(i + 1) % 3]});
+    }
+  }
+}
+
 }  // namespace detail
 
 /// An icosahedron subdivided `level` times: 10 * 4^level + 2 vertices.
 inline Mesh icosphere(int level) {
   Mesh mesh = detail::icosahedron();
   for (int i = 0; i < level; ++i) mesh = detail::subdivided(mesh);
-  for (const auto& face : mesh.faces) {
-    for (int i = 0; i < 3; ++i) {
-      if (face[i] < face[(i + 1) % 3]) mesh.edges.push_back({face[i], face[(i + 1) % 3]});
-    }
-  }
+  detail::addEdges(mesh);
+  return mesh;
+}
+
+/// An icosahedron with its edges cut into `frequency` pieces: 10 * frequency^2 + 2 vertices.
+inline Mesh geodesicGrid(std::uint32_t frequency) {
+  Mesh mesh = detail::divided(detail::icosahedron(), frequency);
+  detail::addEdges(mesh);
   return mesh;
 }
 

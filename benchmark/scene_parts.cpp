@@ -87,13 +87,16 @@ void displace(double deviation, Random& random, Parts& parts) {
   }
 }
 
-Parts displacedMesh(int level, Springs springs, Random& random, double triangle_stiffness) {
-  const Mesh mesh = icosphere(level);
+Parts displaced(const Mesh& mesh, Springs springs, Random& random, double triangle_stiffness) {
   Parts parts = particlesAt(mesh.vertices);
   if (springs != Springs::triangles) addArcs(mesh, random, parts);
   if (springs != Springs::arcs) addTriangles(mesh, random, triangle_stiffness, parts);
   displaceByEdges(mesh, random, parts);
   return parts;
+}
+
+Parts displacedMesh(int level, Springs springs, Random& random, double triangle_stiffness) {
+  return displaced(icosphere(level), springs, random, triangle_stiffness);
 }
 
 }  // namespace benchmark_scenes

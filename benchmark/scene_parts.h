@@ -43,9 +43,12 @@ void displace(double deviation, Random& random, Parts& parts);
 
 enum class Springs { arcs, triangles, both };
 
-/// An icosphere with angle springs on its edges (stiffness 1, at rest within 10 % of the arc),
+/// A mesh with angle springs on its edges (stiffness 1, at rest within 10 % of the arc),
 /// solid-angle springs on its faces (at rest within 20 % of the area), or both, displaced by a
 /// Gaussian of 0.15 mean edges.
+Parts displaced(const Mesh& mesh, Springs springs, Random& random, double triangle_stiffness = 10);
+
+/// The same of an icosphere.
 Parts displacedMesh(int level, Springs springs, Random& random, double triangle_stiffness = 10);
 
 }  // namespace benchmark_scenes
