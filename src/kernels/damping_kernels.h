@@ -36,6 +36,22 @@ struct alignas(Row) GradientGroup {
 template <class Dampers>
 using GradientsOf = GradientGroup<Dampers::kEnds>;
 
+/// What a damper does to its ends over some time: the change of momentum by the rate, and the
+/// energy taken by its square.
+struct DamperFlow {
+  double impulse, energy;
+};
+
+/// Dampers of a patch that act one after another.
+template <class Dampers>
+struct DamperChain {
+  const Dampers* dampers;
+  const GradientsOf<Dampers>* gradients;
+  const DamperFlow* flows;  ///< one a damper, or one an end
+  std::uint32_t group_count;
+  std::uint32_t count;  ///< of those that act; the n-th is in lane n / group_count
+};
+
 /// Kernels for one kind of springs; `own` is whether dampers act on the ends each by itself.
 template <class Dampers>
 struct DamperKernels {
@@ -52,6 +68,11 @@ struct DamperKernels {
   /// Adds D velocities to the rows of `rates`.
   void (*add_rates)(const Dampers* dampers, const GradientsOf<Dampers>* gradients,
                     std::uint32_t group_count, bool own, const double* velocities, double* rates);
+
+  /// Lets dampers act on the rows of `velocities` group by group, or in the opposite order.
+  /// @return the energy that they took out [J].
+  double (*forward)(const DamperChain<Dampers>& chain, bool own, double* velocities);
+  double (*backward)(const DamperChain<Dampers>& chain, bool own, double* velocities);
 };
 
 /// Particles side by side, a multiple of kGroup, under torques and damping.

@@ -10,6 +10,8 @@ namespace {
 
 using spherical_springs::core::ArcDampers;
 using spherical_springs::core::DampedParticles;
+using spherical_springs::core::DamperChain;
+using spherical_springs::core::DamperFlow;
 using spherical_springs::core::GradientGroup;
 using spherical_springs::core::GradientsOf;
 using spherical_springs::core::OrientedArcDampers;
@@ -93,6 +95,17 @@ std::uint32_t gradients(const Dampers* dampers, std::uint32_t group_count, const
   return hard_count;
 }
 
+template <int kEnds>
+[[gnu::always_inline]] inline LaneGradients<kEnds> loadGradients(
+    const GradientGroup<kEnds>& gradients, std::uint32_t first) {
+  LaneGradients<kEnds> lanes;
+  for (int i = 0; i < kEnds - 1; ++i) {
+    const auto& from = gradients.of[i];
+    lanes.of[i] = {load(from[0] + first), load(from[1] + first), load(from[2] + first)};
+  }
+  return lanes;
+}
+
 /// Calls `use(batch, gradients)`, some springs at a time.
 template <class Dampers, class Use>
 [[gnu::always_inline]] inline void forEachBatch(const Dampers* dampers,
@@ -100,12 +113,7 @@ template <class Dampers, class Use>
                                                 std::uint32_t group_count, const Use& use) {
   for (std::uint32_t g = 0; g < group_count; ++g) {
     for (std::uint32_t first = 0; first < kGroup; first += kLanes) {
-      LaneGradients<Dampers::kEnds> lanes;
-      for (int i = 0; i < Dampers::kEnds - 1; ++i) {
-        const auto& from = gradients[g].of[i];
-        lanes.of[i] = {load(from[0] + first), load(from[1] + first), load(from[2] + first)};
-      }
-      use(Batch<Dampers>{dampers + g, first}, lanes);
+      use(Batch<Dampers>{dampers + g, first}, loadGradients(gradients[g], first));
     }
   }
 }
@@ -179,6 +187,90 @@ void addRates(const Dampers* dampers, const GradientsOf<Dampers>* gradients,
   add(dampers, gradients, group_count, velocities, rates);
 }
 
+/// Vectors in the first three numbers.
+inline double sumOf(const Four& v) { return v[0] + v[1] + v[2]; }
+
+/// One damper and its ends.
+template <int kEnds>
+struct DamperRows {
+  Four gradients[kEnds];
+  double mobilities[kEnds];
+  double* velocities[kEnds];
+
+  /// Pushes an end by a share of its gradient.
+  [[gnu::always_inline]] void push(int end, double momentum) const {
+    addFour(momentum * mobilities[end] * gradients[end], velocities[end]);
+  }
+  [[gnu::always_inline]] Four rate(int end) const {
+    return gradients[end] * loadFour(velocities[end]);
+  }
+
+  [[gnu::always_inline]] double dampTogether(const DamperFlow& flow) const {
+    Four rates = rate(0);
+    for (int i = 1; i < kEnds; ++i) rates += rate(i);
+    const double whole = sumOf(rates);
+    for (int i = 0; i < kEnds; ++i) push(i, flow.impulse * whole);
+    return flow.energy * whole * whole;
+  }
+
+  [[gnu::always_inline]] double dampEach(const DamperFlow* flows) const {
+    double taken = 0;
+    for (int i = 0; i < kEnds; ++i) {
+      const double own = sumOf(rate(i));
+      push(i, flows[i].impulse * own);
+      taken += flows[i].energy * own * own;
+    }
+    return taken;
+  }
+};
+
+template <class Dampers, int kEnds>
+[[gnu::always_inline]] inline void takeRows(const Batch<Dampers>& batch,
+                                            const LaneGradients<kEnds>& gradients,
+                                            double* velocities, DamperRows<kEnds> (&rows)[kLanes]) {
+  for (int end = 0; end < kEnds; ++end) {
+    forEachRow(gradients.at(end), [&](int k, const Four& row) { rows[k].gradients[end] = row; });
+    for (int k = 0; k < kLanes; ++k) {
+      const double root = batch.group->root_mobility[end][batch.first + k];
+      rows[k].mobilities[end] = root * root;
+      rows[k].velocities[end] = velocities + batch.rows(end)[k];
+    }
+  }
+}
+
+template <class Dampers, bool kOwn, bool kBackward>
+double dampInTurn(const DamperChain<Dampers>& chain, double* velocities) {
+  constexpr int kEnds = Dampers::kEnds;
+  const auto turn = [](std::uint32_t i, std::uint32_t count) {
+    return kBackward ? count - 1 - i : i;
+  };
+  double taken = 0;
+  for (std::uint32_t i = 0; i < chain.group_count; ++i) {
+    const std::uint32_t g = turn(i, chain.group_count);
+    for (std::uint32_t j = 0; j < kGroup / kLanes; ++j) {
+      const std::uint32_t first = kLanes * turn(j, kGroup / kLanes);
+      DamperRows<kEnds> rows[kLanes];
+      takeRows(Batch<Dampers>{chain.dampers + g, first}, loadGradients(chain.gradients[g], first),
+               velocities, rows);
+      for (int n = 0; n < kLanes; ++n) {
+        const std::uint32_t k = turn(n, kLanes), lane = first + k;
+        if (lane * chain.group_count + g >= chain.count) continue;
+        const std::uint32_t damper = g * kGroup + lane;
+        taken += kOwn ? rows[k].dampEach(chain.flows + kEnds * damper)
+                      : rows[k].dampTogether(chain.flows[damper]);
+      }
+    }
+  }
+  return taken;
+}
+
+template <class Dampers, bool kBackward>
+double dampAll(const DamperChain<Dampers>& chain, bool own, double* velocities) {
+  const auto damp =
+      own ? dampInTurn<Dampers, true, kBackward> : dampInTurn<Dampers, false, kBackward>;
+  return damp(chain, velocities);
+}
+
 // What a term takes out is what the torques do on its path, less what comes to be kinetic energy.
 // In the first one the torques' share of both is the same, and is left out of both.
 double addSeriesTerm(const DampedParticles& particles, const SeriesTerm& term, const double* last,
@@ -211,7 +303,8 @@ void torques(const Particles& particles, double* torques, double* start) {
 
 template <class Dampers>
 constexpr spherical_springs::core::DamperKernels<Dampers> kDamperKernels = {
-    gradients<Dampers>, addBounds<Dampers>, addRates<Dampers>};
+    gradients<Dampers>, addBounds<Dampers>, addRates<Dampers>, dampAll<Dampers, false>,
+    dampAll<Dampers, true>};
 
 constexpr spherical_springs::core::DampingKernels kDampingKernels = {
     {kDamperKernels<ArcDampers>, kDamperKernels<TriangleDampers>,

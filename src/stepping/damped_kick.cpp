@@ -19,7 +19,7 @@ DampedKick::DampedKick(const System& system, const Layout& layout, const Damping
       threads_(threads),
       own_(system.springDamping() == SpringDamping::own),
       dampers_(system, layout),
-      sweep_(dampers_, gradients_, own_),
+      sweep_(dampers_, gradients_, kernels, own_),
       viscous_(layout.slotCount(), 0),
       torques_(layout.slotCount(), Row{}),
       last_(layout.rowCount(), Row{}),

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 namespace spherical_springs::core {
 namespace {
@@ -36,10 +37,11 @@ void DamperSweep::makeRoom() {
 }
 
 /// `mobility`: of the gradients times the root of the coefficient.
-DamperSweep::Flow DamperSweep::flowOf(double mobility, double duration) {
+DamperFlow DamperSweep::flowOf(double mobility, double duration) {
   if (mobility == 0) return {0, 0};
   const double growth = std::expm1(-mobility * duration);
-  return {growth / mobility, -0.5 * growth * (growth + 2) / mobility};
+  const double impulse = growth / mobility;
+  return {impulse, -0.5 * impulse * (growth + 2)};
 }
 
 void DamperSweep::takeFlows(std::size_t patch, double duration) {
@@ -51,7 +53,7 @@ void DamperSweep::takeFlows(std::size_t patch, double duration) {
       const std::uint32_t group = i / kGroup, lane = i % kGroup;
       const auto& dampers = dampers_.groups().get<Spring>()[group];
       const auto gradients = gradientsAt<kEnds>(gradients_.get<Spring>()[group], lane);
-      Flow* const flows = &flows_.get<Spring>()[flowIndex<Spring>(group, lane)];
+      DamperFlow* const flows = &flows_.get<Spring>()[flowIndex<Spring>(group, lane)];
       double sum = 0;
       for (int e = 0; e < kEnds; ++e) {
         const double mobility =
@@ -64,15 +66,47 @@ void DamperSweep::takeFlows(std::size_t patch, double duration) {
   });
 }
 
+template <class Spring>
+DamperChain<DampersOf<Spring>> DamperSweep::chain(std::size_t patch) const {
+  const auto& [groups, inner] = dampers_.shares()[patch].get<Spring>();
+  return {dampers_.groups().get<Spring>().data() + groups.begin,
+          gradients_.get<Spring>().data() + groups.begin,
+          flows_.get<Spring>().data() + flowIndex<Spring>(groups.begin, 0),
+          groups.end - groups.begin, inner};
+}
+
+double DamperSweep::innerForward(std::size_t patch, Row* velocities) const {
+  double taken = 0;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    taken += kernels.forward(chain<Spring>(patch), own_, velocities->values);
+  });
+  return taken;
+}
+
+double DamperSweep::innerBackward(std::size_t patch, Row* velocities) const {
+  double taken = 0;
+  forEachKindBackward([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    taken += kernels.backward(chain<Spring>(patch), own_, velocities->values);
+  });
+  return taken;
+}
+
 /// @return the energy that it took out [J].
 template <class Spring>
-double DamperSweep::damp(std::uint32_t group, std::uint32_t lane, Row* const* ends) const {
+double DamperSweep::dampShared(const SharedDamper& damper, Row* velocities) const {
   constexpr int kEnds = Spring::kParticles;
+  const auto [group, lane, rows] = damper;
   const auto& dampers = dampers_.groups().get<Spring>()[group];
   const auto gradients = gradientsAt<kEnds>(gradients_.get<Spring>()[group], lane);
-  const Flow* const flows = &flows_.get<Spring>()[flowIndex<Spring>(group, lane)];
-  const auto velocity = [&](int e) { return Eigen::Map<Vector3>(ends[e]->values); };
-  const auto push = [&](int e, double momentum) {
+  const DamperFlow* const flows = &flows_.get<Spring>()[flowIndex<Spring>(group, lane)];
+  const auto velocity = [&, &rows = rows](int e) {
+    return Eigen::Map<Vector3>(velocities[rows[e]].values);
+  };
+  const auto push = [&, lane = lane](int e, double momentum) {
     velocity(e) += momentum * squared(dampers.root_mobility[e][lane]) * gradients[e];
   };
   double rates[kEnds], sum = 0, taken = 0;
@@ -86,53 +120,6 @@ double DamperSweep::damp(std::uint32_t group, std::uint32_t lane, Row* const* en
     taken += flows[e].energy * squared(rates[e]);
   }
   return taken;
-}
-
-template <class Spring>
-double DamperSweep::dampInner(std::uint32_t group, std::uint32_t lane, Row* velocities) const {
-  const auto& dampers = dampers_.groups().get<Spring>()[group];
-  Row* ends[Spring::kParticles];
-  for (std::size_t e = 0; e < Spring::kParticles; ++e) {
-    ends[e] = velocities + dampers.ends[e][lane] / kRowLength;
-  }
-  return damp<Spring>(group, lane, ends);
-}
-
-double DamperSweep::innerForward(std::size_t patch, Row* velocities) const {
-  double taken = 0;
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& share = dampers_.shares()[patch].get<Spring>();
-    for (std::uint32_t group = share.groups.begin; group < share.groups.end; ++group) {
-      for (std::uint32_t lane = 0; lane < kGroup; ++lane) {
-        if (share.groups.elementAt(group, lane) >= share.inner) break;
-        taken += dampInner<Spring>(group, lane, velocities);
-      }
-    }
-  });
-  return taken;
-}
-
-double DamperSweep::innerBackward(std::size_t patch, Row* velocities) const {
-  double taken = 0;
-  forEachKindBackward([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& share = dampers_.shares()[patch].get<Spring>();
-    for (std::uint32_t group = share.groups.end; group-- > share.groups.begin;) {
-      for (std::uint32_t lane = kGroup; lane-- > 0;) {
-        if (share.groups.elementAt(group, lane) >= share.inner) continue;
-        taken += dampInner<Spring>(group, lane, velocities);
-      }
-    }
-  });
-  return taken;
-}
-
-template <class Spring>
-double DamperSweep::dampShared(const SharedDamper& damper, Row* velocities) const {
-  Row* ends[Spring::kParticles];
-  for (std::size_t e = 0; e < Spring::kParticles; ++e) ends[e] = velocities + damper.rows[e];
-  return damp<Spring>(damper.group, damper.lane, ends);
 }
 
 double DamperSweep::shared(Row* velocities) const {

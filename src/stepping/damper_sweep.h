@@ -14,8 +14,9 @@ struct DamperGradients : std::vector<GradientsOf<DampersOf<Spring>>> {};
 class DamperSweep {
  public:
   /// `own`: whether dampers act on the ends each by itself.
-  DamperSweep(const DamperLayout& dampers, const PerKind<DamperGradients>& gradients, bool own)
-      : dampers_(dampers), gradients_(gradients), own_(own) {}
+  DamperSweep(const DamperLayout& dampers, const PerKind<DamperGradients>& gradients,
+              const DampingKernels& kernels, bool own)
+      : dampers_(dampers), gradients_(gradients), kernels_(kernels), own_(own) {}
 
   /// To be called before flows are taken, with nothing else under way.
   void makeRoom();
@@ -34,25 +35,20 @@ class DamperSweep {
   double shared(Row* velocities) const;
 
  private:
-  /// Of a damper: the change of momentum by the rate, and the energy taken by its square.
-  struct Flow {
-    double impulse, energy;
-  };
   template <class Spring>
-  struct Flows : std::vector<Flow> {};
+  struct Flows : std::vector<DamperFlow> {};
 
-  static Flow flowOf(double mobility, double duration);
+  static DamperFlow flowOf(double mobility, double duration);
   template <class Spring>
   std::size_t flowIndex(std::uint32_t group, std::uint32_t lane) const;
   template <class Spring>
-  double damp(std::uint32_t group, std::uint32_t lane, Row* const* ends) const;
-  template <class Spring>
-  double dampInner(std::uint32_t group, std::uint32_t lane, Row* velocities) const;
+  DamperChain<DampersOf<Spring>> chain(std::size_t patch) const;
   template <class Spring>
   double dampShared(const SharedDamper& damper, Row* velocities) const;
 
   const DamperLayout& dampers_;
   const PerKind<DamperGradients>& gradients_;
+  const DampingKernels& kernels_;
   const bool own_;
   PerKind<Flows> flows_;  // one a damper, or one an end
 };

@@ -27,7 +27,8 @@ void setWidth(double width, OrientedArcDampers& group, std::uint32_t lane) {
   group.width[lane] = width;
 }
 
-/// Springs of one kind, each on particles of its own, so that sums are those of one spring.
+/// Springs of one kind, each on particles of its own, so that sums are those of one spring, or all
+/// on a few.
 template <class Spring>
 struct Bench {
   static constexpr std::uint32_t kCount = 5 * kGroup;
@@ -41,8 +42,10 @@ struct Bench {
   std::vector<Spring> springs = std::vector<Spring>(kCount);
   std::vector<std::uint32_t> hard;
 
-  static std::uint32_t row(std::uint32_t s, int end) {
-    return (7 * s + 13) % kCount + end * kCount;
+  std::uint32_t crowd = kCount;  ///< so many particles are there for the ends of each number
+
+  std::uint32_t row(std::uint32_t s, int end) const {
+    return (7 * s + 13 + end) % crowd + end * kCount;
   }
   Dampers& groupOf(std::uint32_t s) { return groups[s / kGroup]; }
 
@@ -97,6 +100,29 @@ struct Bench {
       result[kEnds - 1] -= result[i];
     }
     return result;
+  }
+
+  std::vector<DamperFlow> someFlows(unsigned seed) const {
+    Random random(seed);
+    std::vector<DamperFlow> flows(kEnds * kCount);
+    for (DamperFlow& flow : flows) flow = {-random.between(0.1, 0.3), random.between(1, 2)};
+    return flows;
+  }
+
+  /// Lets one damper act, by its flow or those of its ends. @return the energy.
+  double damp(std::uint32_t s, const DamperFlow* flows, bool own) {
+    const Ends gradients = gradientsOf(s), before = at(velocities, s);
+    double whole = 0, taken = 0;
+    for (int i = 0; i < kEnds; ++i) whole += gradients[i].dot(before[i]);
+    for (int i = 0; i < kEnds; ++i) {
+      const double root = groupOf(s).root_mobility[i][s % kGroup];
+      const double rate = own ? gradients[i].dot(before[i]) : whole;
+      const DamperFlow& flow = flows[own ? i : 0];
+      Eigen::Map<Vector3>(velocities[row(s, i)].values) +=
+          flow.impulse * rate * root * root * gradients[i];
+      if (own || i == 0) taken += flow.energy * rate * rate;
+    }
+    return taken;
   }
 
   bool isHard(std::uint32_t s) const { return std::count(hard.begin(), hard.end(), s) > 0; }
@@ -201,6 +227,42 @@ TYPED_TEST(DamperKernelsOf, AddTheBoundsOfGershgorinsCircles) {
           EXPECT_NEAR(bench.at(bounds, s)[i].x(), expected, 1e-13 * expected);
         }
       }
+    }
+  }
+}
+
+template <class Spring>
+void expectTurns(Bench<Spring> bench, const StepKernels& kernels, bool own, bool backward) {
+  constexpr auto kCount = Bench<Spring>::kCount, kActing = kCount - 7, kGroups = kCount / kGroup;
+  const auto flows = bench.someFlows(8);
+  std::vector<Row> velocities = bench.velocities;
+  const auto& kernel = backward ? bench.of(kernels).backward : bench.of(kernels).forward;
+  const double taken =
+      kernel({bench.groups.data(), bench.gradients.data(), flows.data(), kGroups, kActing}, own,
+             velocities[0].values);
+  double expected = 0;
+  for (std::uint32_t n = 0; n < kCount; ++n) {
+    const std::uint32_t s = backward ? kCount - 1 - n : n;
+    if (s % kGroup * kGroups + s / kGroup >= kActing) continue;
+    expected += bench.damp(s, &flows[own ? s * Spring::kParticles : s], own);
+  }
+  EXPECT_NEAR(taken, expected, 1e-12 * expected);
+  for (std::size_t i = 0; i < velocities.size(); ++i) {
+    const Eigen::Map<const Vector3> velocity(velocities[i].values);
+    const Eigen::Map<const Vector3> in_turn(bench.velocities[i].values);
+    EXPECT_LE((velocity - in_turn).norm(), 1e-12 * (1 + in_turn.norm())) << i;
+  }
+}
+
+TYPED_TEST(DamperKernelsOf, ActInTurnThereAndBack) {
+  auto& bench = this->bench_;
+  bench.crowd = 5;  // so that some taken together meet
+  bench.fill(0.5, 7);
+  for (const StepKernels* kernels : stepKernelsHere()) {
+    bench.run(*kernels);
+    ASSERT_TRUE(bench.hard.empty());
+    for (const bool own : {false, true}) {
+      for (const bool backward : {false, true}) expectTurns(bench, *kernels, own, backward);
     }
   }
 }
