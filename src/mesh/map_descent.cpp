@@ -42,6 +42,7 @@ bool MapDescent::iterate(FaceHessian hessian) {
   constexpr int kMostAttempts = 30, kMostCuts = 25;
   constexpr double kCut = 0.6, kRaise = 4, kLeastRaised = 1e-9;
   constexpr double kSufficient = 5e-5;  // of what the gradient promises
+  constexpr double kFree = 1e-3;        // shift that hardly holds a step short
   energy_.evaluate(hessian);
   const double value = energy_.value();
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
@@ -51,9 +52,10 @@ bool MapDescent::iterate(FaceHessian hessian) {
       for (int cut = 0; cut < kMostCuts; ++cut, length *= kCut) {
         const double next = energy_.valueAfter(length * step_);
         if (!(next < value + kSufficient * length * slope)) continue;
+        const double shift = shift_;
         adaptShift(length, (value - next) / expectedDrop(length), attempt == 0);
         energy_.move(length * step_);
-        length_ = length;
+        held_short_ = length < 1 || (shift_ < shift && shift_ > kFree);
         drop_ = (value - next) / value;
         return true;
       }

@@ -15,12 +15,23 @@ class MapDescent {
   /// @return whether a step has lowered the energy.
   bool iterate(FaceHessian hessian);
 
-  /// Iterates while `go_on()`, until a step that was not cut lowers the energy by less than the
-  /// share `slow`, or none does.
+  /// Iterates while `go_on()`, until a step that was not held short lowers the energy by less than
+  /// the share `slow`, or none does.
   template <class GoOn>
   void run(FaceHessian hessian, double slow, const GoOn& go_on) {
-    while (go_on() && iterate(hessian) && (length_ < 1 || drop_ > slow)) {
+    while (go_on() && iterate(hessian) && (held_short_ || drop_ > slow)) {
     }
+  }
+
+  /// The same with a sweep over the vertices after each step.
+  template <class GoOn>
+  void runWithSweeps(FaceHessian hessian, double slow, const GoOn& go_on) {
+    bool moved = false;
+    run(hessian, slow, [&] {
+      if (moved) energy_.sweep();
+      moved = true;
+      return go_on();
+    });
   }
 
  private:
@@ -34,7 +45,8 @@ class MapDescent {
   MapEnergy::Hessian shifted_;
   Eigen::VectorXd step_;
   double shift_ = 1e-2;
-  double length_ = 0, drop_ = 0;  // of the last step: the share of it taken, that of the energy
+  bool held_short_ = false;  // the last step, which the next will not be as much
+  double drop_ = 0;          // of the energy in the last step, as a share
 };
 
 }  // namespace spherical_springs::mesh

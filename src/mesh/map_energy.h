@@ -6,20 +6,15 @@
 #include <vector>
 
 #include "../minimisation/block_matrix.h"
-#include "spherical_springs/mesh/triangle_mesh.h"
-#include "spherical_springs/springs/condition.h"
+#include "face_energy.h"
 
 namespace spherical_springs::mesh {
 
-/// The second derivatives of each face: the exact ones; a positive semidefinite part of them; or
-/// those that areas have where they are linear (Gauss and Newton), which serve where the areas are
-/// nearly right.
-enum class FaceHessian { exact, definite, gauss_newton };
+/// How much each face counts: all alike, as in the spread that is wanted; or by the square root of
+/// its share, so that tiny faces do not rule before the large ones are about right.
+enum class FaceWeights { equal, root_of_share };
 
-/// Over all faces, with r = area / share,
-///   (r + 1/r - 2) / 2
-///     + shape (tan^2(area / 4) + sum over edges of tan^2(edge / 2) / sqrt 3) / share,
-/// which is infinite at a fold, at a face of half of the sphere and at an edge of length pi.
+/// The sum over the faces of their `FaceEnergy`; infinite where they do not cover the sphere once.
 /// Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the n-th vertex, in an order of
 /// its own.
 class MapEnergy {
@@ -33,6 +28,7 @@ class MapEnergy {
   Eigen::Index faceCount() const { return faces_.cols(); }
 
   void setShape(double shape) { shape_ = shape; }
+  void setWeights(FaceWeights weights);
 
   /// Puts vertices somewhere; `evaluate` is to follow.
   void place(const Points& points);
@@ -43,6 +39,11 @@ class MapEnergy {
   double valueAfter(const Eigen::VectorXd& step) const;
   void move(const Eigen::VectorXd& step);
 
+  /// Moves each vertex by a Newton step of its own that lowers the energy, those before it being
+  /// where they are now (Gauss and Seidel). Cures what a few vertices can cure among themselves,
+  /// which would cut the steps of all.
+  void sweep();
+
   /// Value, gradient and Hessian here.
   void evaluate(FaceHessian hessian);
   double value() const { return value_; }
@@ -50,33 +51,34 @@ class MapEnergy {
   const Hessian& hessian() const { return hessian_; }
   const std::vector<core::TangentFrame>& frames() const { return frames_; }
 
-  /// Sum over the faces of each vertex of 1 / share.
+  /// Sum over the faces of each vertex of weight / share.
   const Eigen::VectorXd& mass() const { return mass_; }
 
   /// Standard deviation of log (area / share).
   double spread() const;
 
  private:
-  struct FaceTerms {
-    double value;
-    Eigen::Matrix<double, 6, 1> gradient;
-    Eigen::Matrix<double, 6, 6> hessian;
-  };
   double valueAt(const std::vector<Vector3>& points) const;
-  FaceTerms termsOf(Eigen::Index face, FaceHessian hessian) const;
+  FaceEnergy faceEnergy(Eigen::Index face) const { return {shares_[face], weights_[face], shape_}; }
+  FaceEnergy::Corners corners(Eigen::Index face) const;
+  FaceEnergy::Terms terms(Eigen::Index face, FaceHessian hessian) const;
+  Eigen::Vector2d ownStep(std::size_t n) const;
+  double ownValue(std::size_t n, const Vector3& point) const;
+  void moveAlone(std::size_t n);
   std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
   int threads_;
   double shape_ = 0;
   std::vector<std::uint32_t> vertices_;  // of the mesh, by number here
   Faces faces_;                          // of numbers
-  Eigen::VectorXd shares_, mass_;
+  Eigen::VectorXd shares_, weights_, mass_;
   core::BlockPattern pattern_;
+  core::BlockOrder order_;                             // of sweeps
   std::vector<std::uint32_t> first_corner_, corners_;  // 3 face + corner, of each vertex
   std::vector<std::array<std::uint32_t, 3>> places_;   // of each of those with the face's corners
   std::vector<Vector3> points_;
   std::vector<core::TangentFrame> frames_;
-  std::vector<FaceTerms> terms_;
+  std::vector<FaceEnergy::Terms> terms_;
   double value_ = 0;
   Eigen::VectorXd gradient_;
   Hessian hessian_;

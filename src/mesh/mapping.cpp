@@ -12,7 +12,7 @@
 namespace spherical_springs::mesh {
 namespace {
 
-constexpr double kRoundest = 0.3;  // weight of the faces' shape before the finish
+constexpr double kRoundest = 0.1;  // weight of the faces' shape before the finish
 constexpr double kLowering = 0.3;  // of that weight from round to round
 constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a round
 
@@ -91,13 +91,14 @@ std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
   const FoldFreeStart start =
       foldFreeStart(level.faces, HalfEdges(level.faces), level.vertex_count, level.shares);
   MapEnergy energy(start.faces, start.shares, start.points, options_.threads);
+  energy.setWeights(FaceWeights::root_of_share);
   MapDescent descent(energy, options_.threads);
   int iterations = 0;
   const auto given_up = [&] { return iterations >= kMostIterations || (has_map_ && ended_); };
   for (double shape = 1; shape > kLeastShape && !given_up(); shape *= kLowering) {
     energy.setShape(shape);
-    descent.run(FaceHessian::definite, kSlow,
-                [&] { return ++iterations < kMostIterations && (!has_map_ || goOn()); });
+    descent.runWithSweeps(FaceHessian::definite, kSlow,
+                          [&] { return ++iterations < kMostIterations && (!has_map_ || goOn()); });
     Points points = energy.points().leftCols(level.vertex_count);
     if (coversOnce(level.faces, points)) return points;
   }
@@ -106,6 +107,7 @@ std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
 
 /// Everything but the last phase, which is the longest, from a coarsest mesh of a size.
 std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
+  constexpr int kSweepsBefore = 10;  // the first step of all vertices together
   const Decimation meshes = decimation(faces_, shares_, vertices_, size);
   std::optional<Points> start = coarsest(meshes.levels.front());
   if (!start) return {};
@@ -116,8 +118,10 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
     for (; v < level.vertex_count; ++v) points.col(v) = placeInside(meshes.rings[v], points);
     MapEnergy energy(level.faces, level.shares, points, options_.threads);
     MapDescent descent(energy, options_.threads);
+    energy.setWeights(FaceWeights::root_of_share);
     energy.setShape(kRoundest);
-    descent.run(FaceHessian::definite, kSlow, [&] { return goOn(); });
+    for (int i = 0; i < kSweepsBefore && goOn(); ++i) energy.sweep();
+    descent.runWithSweeps(FaceHessian::definite, kSlow, [&] { return goOn(); });
     points = energy.points();
   }
   Points result(3, vertices_);
@@ -128,12 +132,14 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
 /// Lowers the weight of the faces' shape, as long as that is quick.
 Mapping::Candidate Mapping::roundedOff(const Points& points) {
   constexpr double kLeastShape = 1e-5;
+  constexpr double kAlikeFrom = 1e-3;  // where areas are right enough for all faces to count alike
   MapEnergy energy(faces_, shares_, points, options_.threads);
   MapDescent descent(energy, options_.threads);
   for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
        shape *= kLowering) {
     energy.setShape(shape);
-    descent.run(FaceHessian::gauss_newton, kSlow, [&] { return wanting(energy); });
+    energy.setWeights(shape > kAlikeFrom ? FaceWeights::root_of_share : FaceWeights::equal);
+    descent.runWithSweeps(FaceHessian::gauss_newton, kSlow, [&] { return wanting(energy); });
   }
   return {energy.points(), energy.spread()};
 }

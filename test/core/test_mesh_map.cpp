@@ -71,6 +71,39 @@ TEST(MapEnergy, DerivativesAgreeWithDifferences) {
   }
 }
 
+TEST(MapEnergy, SweepsLowerItToWhereNoVertexCanAlone) {
+  const TriangleMesh mesh = testing::bumps(2, 1);
+  MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 0.05), 1);
+  energy.setShape(0.3);
+  const auto largestGradient = [&] {
+    energy.evaluate(FaceHessian::exact);
+    return energy.gradient().cwiseAbs().maxCoeff();
+  };
+  const double before = largestGradient();
+  double value = energy.value();
+  for (int i = 0; i < 200; ++i) {
+    energy.sweep();
+    energy.evaluate(FaceHessian::exact);
+    EXPECT_LE(energy.value(), value * (1 + 1e-12));
+    value = energy.value();
+  }
+  EXPECT_LT(largestGradient(), 1e-3 * before);
+  EXPECT_TRUE(coversOnce(mesh.faces, energy.points()));
+}
+
+TEST(MapEnergy, SweepsGiveTheSameBitsOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = testing::bumps(5, 1);
+  const auto swept = [&](int threads) {
+    MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 1e-3), threads);
+    energy.setShape(0.3);
+    energy.sweep();
+    return energy.points();
+  };
+  const Points expected = swept(1);
+  EXPECT_TRUE(expected != mesh.vertices);
+  for (const int threads : {2, 3}) EXPECT_TRUE(swept(threads) == expected) << threads;
+}
+
 TEST(MapEnergy, IsInfiniteAtAFold) {
   const TriangleMesh mesh = testing::bumps(2, 1);
   MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 0), 1);
