@@ -6,6 +6,7 @@
 
 #include "integrators/blocked_splitting.h"
 #include "integrators/implicit_euler.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
 
@@ -14,8 +15,8 @@ IntegrationMethod integrationMethod(const std::string& name) {
   if (name == "verlet") return IntegrationMethod::verlet;
   if (name == "fourth_order") return IntegrationMethod::fourth_order;
   if (name == "implicit_euler") return IntegrationMethod::implicit_euler;
-  throw std::invalid_argument("integrator is '" + name +
-                              "'; allowed: euler, verlet, fourth_order, implicit_euler");
+  throw std::invalid_argument("integrator is " + quoted(name) +
+                              "; allowed: euler, verlet, fourth_order, implicit_euler");
 }
 
 int orderOf(IntegrationMethod method) {

@@ -233,8 +233,8 @@ RelaxationMethod relaxationMethod(const std::string& name) {
   if (name.empty() || name == "newton") return RelaxationMethod::newton;
   if (name == "dynamics") return RelaxationMethod::dynamics;
   if (name == "fire") return RelaxationMethod::fire;
-  throw std::invalid_argument("method is '" + name +
-                              "'; allowed: newton (the default), dynamics, fire");
+  throw std::invalid_argument("method is " + quoted(name) +
+                              "; allowed: newton (the default), dynamics, fire");
 }
 
 double defaultTolerance(const System& system) { return 1e-9 * system.largestStiffness(); }

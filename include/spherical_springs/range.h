@@ -1,4 +1,5 @@
-// Ranges of allowed values, and the one way in which a value outside is refused.
+// Ranges of allowed values, the one way in which a value outside is refused, and values in
+// messages.
 #pragma once
 
 #include <stdexcept>
@@ -29,6 +30,12 @@ constexpr double kFastest = 1e100;
 
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
 std::string toText(double value);
+
+/// On one line: what would end it becomes `?`, and of a long text there is the beginning.
+std::string shortened(const std::string& text);
+
+/// The same between quotes, with the length of a text of which not all is there.
+std::string quoted(const std::string& text);
 
 /// @throw std::invalid_argument "`field` is `value`; allowed: ..." when `value` is outside; a
 /// NonFinite when it is not finite.

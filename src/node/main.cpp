@@ -9,6 +9,7 @@
 #include "publisher.h"
 #include "scene_directory.h"
 #include "services.h"
+#include "spherical_springs/range.h"
 #include "spherical_springs/runner.h"
 #include "spherical_springs/scene_file.h"
 #include "stepper.h"
@@ -24,7 +25,7 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
         core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
     runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
   } catch (const std::exception& fault) {
-    throw std::invalid_argument("parameter ~scene is " + parameters.scene +
+    throw std::invalid_argument("parameter ~scene is " + core::quoted(parameters.scene) +
                                 "; allowed: a scene file; " + fault.what());
   }
 }

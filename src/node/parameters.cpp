@@ -7,20 +7,23 @@
 namespace spherical_springs {
 namespace {
 
-[[noreturn]] void refuse(const std::string& name, const XmlRpc::XmlRpcValue& value,
-                         const std::string& allowed) {
-  std::ostringstream text;
-  text << "parameter ~" << name << " is ";
-  if (value.getType() == XmlRpc::XmlRpcValue::TypeBoolean) {
-    text << (value == XmlRpc::XmlRpcValue(true) ? "true" : "false");
-  } else {
-    value.write(text);
+using Type = XmlRpc::XmlRpcValue::Type;
+
+std::string inWords(const XmlRpc::XmlRpcValue& value) {
+  if (value.getType() == Type::TypeBoolean) {
+    return value == XmlRpc::XmlRpcValue(true) ? "true" : "false";
   }
-  text << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
+  std::ostringstream text;
+  value.write(text);
+  return value.getType() == Type::TypeString ? core::quoted(text.str())
+                                             : core::shortened(text.str());
 }
 
-using Type = XmlRpc::XmlRpcValue::Type;
+[[noreturn]] void refuse(const std::string& name, const XmlRpc::XmlRpcValue& value,
+                         const std::string& allowed) {
+  throw std::invalid_argument("parameter ~" + name + " is " + inWords(value) +
+                              "; allowed: " + allowed);
+}
 
 // A whole number will do for a real one, but nothing else is taken for something else.
 bool isOf(const XmlRpc::XmlRpcValue& raw, double) {

@@ -17,8 +17,8 @@ Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces) {
     char* end;
     const double density = std::strtod(text.c_str(), &end);
     if (*end != '\0' || !allowed.contains(density)) {
-      throw std::invalid_argument("density " + std::to_string(count) + " is " + text +
-                                  "; allowed: " + allowed.allowed);
+      throw std::invalid_argument("density " + std::to_string(count) + " is " +
+                                  core::shortened(text) + "; allowed: " + allowed.allowed);
     }
     if (count < faces) densities[count] = density;
   }

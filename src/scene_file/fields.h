@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "spherical_springs/range.h"
 #include "spherical_springs/sphere.h"
 
 namespace spherical_springs::core {
@@ -79,16 +80,15 @@ class Fields {
   void requireNothingLeft() const {
     for (std::size_t i = 0; i < count_; ++i) {
       if (!fields_[i].taken) {
-        throw std::invalid_argument(name_ + " has no field '" + fields_[i].name + "'");
+        throw std::invalid_argument(name_ + " has no field " + quoted(fields_[i].name));
       }
     }
   }
 
   static std::invalid_argument fault(const std::string& object, const std::string& field,
                                      const Json& json, const std::string& allowed) {
-    constexpr std::size_t kLongest = 60;
     const std::string value = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    return std::invalid_argument(object + "." + field + " is " + value.substr(0, kLongest) +
+    return std::invalid_argument(object + "." + field + " is " + shortened(value) +
                                  "; allowed: " + allowed);
   }
 

@@ -12,6 +12,13 @@ METHODS = ('newton', 'dynamics', 'fire')
 
 
 class TestOutcome(NodeTest):
+    def test_a_method_that_is_none(self):
+        for method, named in (('Newton', "'Newton'"), (100000 * 'x', "xxx...' (100000 bytes)")):
+            with self.assertRaises(Refused) as refusal:
+                self.node.relax(method=method)
+            self.assertIn(named + '; allowed: newton', str(refusal.exception))
+            self.assertLess(len(str(refusal.exception)), 300)
+
     def test_the_octant(self):
         for method in METHODS:
             self.node.clear()

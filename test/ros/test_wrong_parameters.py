@@ -49,6 +49,15 @@ class TestWrongParameters(unittest.TestCase):
     def test_each_is_refused(self):
         self.assertEqual([], [f for name, values in WRONG.items() for f in faults(name, values)])
 
+    def test_an_empty_text_is_seen(self):
+        with NodeProcess(frame_id='') as process:
+            self.assertIsNone(fault(process, 'frame_id', "~frame_id is ''; allowed: "))
+
+    def test_of_a_long_text_there_is_the_beginning(self):
+        with NodeProcess(integrator=9999 * 'x') as process:
+            self.assertIsNone(fault(process, 'integrator', "xxx...' (9999 bytes); allowed: "))
+            self.assertLess(len(process.output()), 500)
+
     def test_a_scene_that_is_none(self):
         with tempfile.NamedTemporaryFile('w', suffix='.json') as file:
             file.write('{"format": "spherical_springs scene 1",\n "particles": [{"mass": -1}]}')
