@@ -14,18 +14,35 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Puts what was written to a file, or to a directory's list of names, on the disk.
-void flushToDisk(const fs::path& path) {
+/// @param whose the file that it is written for
+void flushToDisk(const fs::path& path, const fs::path& whose) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) failTo("open", path);
-  const bool done = ::fsync(file) == 0;
-  ::close(file);
-  if (!done) failTo("write", path);
+  const bool done = file >= 0 && ::fsync(file) == 0;
+  const int reason = errno;
+  if (file >= 0) ::close(file);
+  errno = reason;
+  if (!done) failTo("write", whose);
 }
 
 /// A name that no other writing has, in this process or another.
 fs::path partOf(const fs::path& path) {
   static std::atomic<unsigned> writings{0};
   return path.string() + ".part" + std::to_string(::getpid()) + "-" + std::to_string(writings++);
+}
+
+void writePart(const fs::path& part, const fs::path& path,
+               const std::function<void(std::ostream&)>& write) {
+  std::ofstream out(part, std::ios::binary | std::ios::trunc);
+  if (!out) failTo("write", path);
+  write(out);
+  out.close();
+  if (!out) failTo("write", path);
+  flushToDisk(part, path);
+  fs::rename(part, path);
+}
+
+bool isThereAndNoFile(const fs::path& path) {
+  return fs::exists(path) && !fs::is_regular_file(path);
 }
 
 }  // namespace
@@ -36,7 +53,7 @@ void failTo(const std::string& what, const fs::path& path) {
 }
 
 std::ifstream openToRead(const fs::path& path) {
-  if (fs::exists(path) && !fs::is_regular_file(path)) {
+  if (orFailTo("read", path, [&] { return isThereAndNoFile(path); })) {
     throw std::runtime_error("cannot read " + path.string() + ": not a file");
   }
   std::ifstream in(path, std::ios::binary);
@@ -45,24 +62,18 @@ std::ifstream openToRead(const fs::path& path) {
 }
 
 void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  if (fs::exists(path) && !fs::is_regular_file(path)) {
+  if (orFailTo("write", path, [&] { return isThereAndNoFile(path); })) {
     throw std::runtime_error("cannot write " + path.string() + ": not a file");
   }
   const fs::path part = partOf(path);
   try {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    if (!out) failTo("write", part);
-    write(out);
-    out.close();
-    if (!out) failTo("write", part);
-    flushToDisk(part);
-    fs::rename(part, path);
+    orFailTo("write", path, [&] { writePart(part, path, write); });
   } catch (...) {
     std::error_code ignored;
     fs::remove(part, ignored);
     throw;
   }
-  flushToDisk(path.has_parent_path() ? path.parent_path() : ".");
+  flushToDisk(path.has_parent_path() ? path.parent_path() : ".", path);
 }
 
 }  // namespace spherical_springs::core

@@ -4,12 +4,24 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace spherical_springs::core {
 
 /// @throw std::runtime_error: "cannot `what` `path`: " and what the system says.
 [[noreturn]] void failTo(const std::string& what, const std::filesystem::path& path);
+
+/// What `use` returns. @throw what it throws, but as failTo does for a std::filesystem_error.
+template <class Use>
+auto orFailTo(const std::string& what, const std::filesystem::path& path, const Use& use) {
+  try {
+    return use();
+  } catch (const std::filesystem::filesystem_error& fault) {
+    throw std::runtime_error("cannot " + what + " " + path.string() + ": " +
+                             fault.code().message());
+  }
+}
 
 /// @throw std::runtime_error for what is not a regular file, or cannot be read.
 std::ifstream openToRead(const std::filesystem::path& path);

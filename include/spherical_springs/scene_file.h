@@ -17,8 +17,8 @@ struct SceneFile {
 /// Fields left out are zero, ids left out follow the last one. A file with more than `limits` allow
 /// is refused at the first item too many.
 /// @throw std::runtime_error when the file cannot be read, std::invalid_argument when what it says
-/// is not a scene: with the byte in the file and what the parser expected, or item, field, value
-/// and what is allowed.
+/// is not a scene: with the byte in the file where it is no JSON, or item, field, value and what is
+/// allowed.
 SceneFile readScene(const std::filesystem::path& path, SceneLimits limits);
 
 /// The same from a stream that can tell its position.

@@ -4,38 +4,61 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "../files.h"
+#include "spherical_springs/range.h"
+
 namespace spherical_springs {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const std::string& value,
+                         const std::string& allowed) {
+  throw std::invalid_argument(what + " is " + core::quoted(value) + "; allowed: " + allowed);
+}
+
+}  // namespace
+
 SceneDirectory::SceneDirectory(const std::string& directory) : directory_(directory) {
+  constexpr auto kParameter = "parameter ~scene_directory";
   const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   if (directory == "~" || directory.rfind("~/", 0) == 0) {
     directory_ = fs::path(home != nullptr ? home : "/") /
                  directory.substr(std::min<std::size_t>(2, directory.size()));
   }
-  directory_ = fs::weakly_canonical(fs::absolute(directory_));
-  if (fs::exists(directory_) && !fs::is_directory(directory_)) {
-    throw std::invalid_argument("parameter ~scene_directory is '" + directory +
-                                "'; allowed: a directory, or a name that is free");
+  try {
+    directory_ = fs::weakly_canonical(fs::absolute(directory_));
+    if (fs::exists(directory_) && !fs::is_directory(directory_)) {
+      refuse(kParameter, directory, "a directory, or a name that is free");
+    }
+  } catch (const fs::filesystem_error& fault) {
+    refuse(kParameter, directory, "a directory, or a name that is free; " + fault.code().message());
   }
 }
 
 fs::path SceneDirectory::inside(const std::string& path) const {
-  const auto refuse = [&](const std::string& allowed) {
-    throw std::invalid_argument("path is '" + path + "'; allowed: " + allowed);
-  };
   if (path.find('\0') != std::string::npos) {
     throw std::invalid_argument("path has a zero byte; allowed: the name of a file");
   }
-  if (path.empty()) refuse("the name of a file");
-  fs::path whole = fs::weakly_canonical(directory_ / path);
-  const fs::path from_here = whole.lexically_relative(directory_);
-  if (from_here.empty() || *from_here.begin() == "..") {
-    refuse("files inside " + directory_.string());
+  if (path.empty()) refuse("path", path, "the name of a file");
+  try {
+    fs::path whole = fs::weakly_canonical(directory_ / path);
+    const fs::path from_here = whole.lexically_relative(directory_);
+    if (from_here.empty() || *from_here.begin() == "..") {
+      refuse("path", path, "files inside " + directory_.string());
+    }
+    if (from_here == "." || fs::is_directory(whole)) {
+      refuse("path", path, "the name of a file, not a directory");
+    }
+    return whole;
+  } catch (const fs::filesystem_error& fault) {
+    refuse("path", path, "the name of a file; " + fault.code().message());
   }
-  if (from_here == "." || fs::is_directory(whole)) refuse("the name of a file, not a directory");
-  return whole;
+}
+
+void SceneDirectory::make() const {
+  core::orFailTo("make", directory_, [&] { fs::create_directories(directory_); });
 }
 
 }  // namespace spherical_springs

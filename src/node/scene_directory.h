@@ -15,8 +15,8 @@ class SceneDirectory {
   /// followed. @throw std::invalid_argument for any other.
   std::filesystem::path inside(const std::string& path) const;
 
-  /// Makes the directory where it is missing. @throw std::filesystem::filesystem_error
-  void make() const { std::filesystem::create_directories(directory_); }
+  /// Makes the directory where it is missing. @throw std::runtime_error where it cannot be made.
+  void make() const;
 
   const std::filesystem::path& path() const { return directory_; }
 

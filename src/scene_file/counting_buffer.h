@@ -12,6 +12,9 @@ class CountingBuffer : public std::streambuf {
  public:
   explicit CountingBuffer(std::istream& in) : in_(in) {}
 
+  /// Whether more than there is has been asked for.
+  bool hasEnded() const { return ended_; }
+
   std::size_t offset() const { return filled_ - static_cast<std::size_t>(egptr() - gptr()); }
 
  private:
@@ -20,12 +23,14 @@ class CountingBuffer : public std::streambuf {
     const auto count = in_.gcount();
     filled_ += static_cast<std::size_t>(count);
     setg(block_.data(), block_.data(), block_.data() + count);
+    ended_ = count == 0;
     return count > 0 ? traits_type::to_int_type(block_[0]) : traits_type::eof();
   }
 
   std::istream& in_;
   std::array<char, 1 << 16> block_;
   std::size_t filled_ = 0;
+  bool ended_ = false;
 };
 
 }  // namespace spherical_springs::core

@@ -18,7 +18,23 @@ namespace fs = std::filesystem;
 
 void requireFormat(const std::string& format) {
   if (format == kSceneFormat) return;
-  throw std::invalid_argument("format is '" + format + "'; allowed: " + kSceneFormat);
+  throw std::invalid_argument("format is " + quoted(format) + "; allowed: " + kSceneFormat);
+}
+
+/// Where the text is no JSON.
+struct TextFault : std::invalid_argument {
+  TextFault(std::size_t byte, const std::string& reason)
+      : std::invalid_argument("at byte " + std::to_string(byte) + ": " + reason) {}
+};
+
+/// Of what has been read, which may be anything, up to the byte at fault.
+std::string lastOf(const std::string& read) {
+  constexpr std::size_t kShown = 30;
+  std::string last = read.size() > kShown ? read.substr(read.size() - kShown) : read;
+  for (char& c : last) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return last;
 }
 
 /// Takes what a parser comes to, item by item: the memory holds the items, and never the whole
@@ -47,7 +63,7 @@ class SceneEvents {
     }
     field_ = name;
     if (!seen_.insert(name).second) {
-      throw std::invalid_argument("the scene has two fields '" + name + "'");
+      throw std::invalid_argument("the scene has two fields " + quoted(name));
     }
     if (!ItemLists::isList(name)) scene_.begin(name);
     return true;
@@ -65,7 +81,9 @@ class SceneEvents {
   }
 
   bool end_object() {
-    if (--depth_ == kInList) lists_.take(field_, item_, source_.offset());
+    --depth_;
+    closed_ = depth_ == kOutside;
+    if (depth_ == kInList) lists_.take(field_, item_, source_.offset());
     return true;
   }
 
@@ -84,10 +102,13 @@ class SceneEvents {
     return true;
   }
 
-  bool parse_error(std::size_t, const std::string&, const Json::exception& fault) {
-    const auto* const of_text = dynamic_cast<const Json::parse_error*>(&fault);
-    if (of_text != nullptr) throw Json::parse_error(*of_text);
-    throw std::invalid_argument(fault.what());
+  bool parse_error(std::size_t byte, const std::string& read, const Json::exception& fault) {
+    constexpr int kOverflow = 406;  // the library's number of it
+    if (fault.id == kOverflow)
+      throw TextFault(byte, "the number " + shortened(read) + " is too large");
+    if (closed_) throw TextFault(byte, "there is more after the end of the scene");
+    if (source_.hasEnded()) throw TextFault(byte, "the text ends before the scene does");
+    throw TextFault(byte, "this is not JSON: " + quoted(lastOf(read)));
   }
 
   /// Of the whole scene, at its end [s].
@@ -125,7 +146,7 @@ class SceneEvents {
 
   void requireList() const {
     if (ItemLists::isList(field_)) return;
-    throw std::invalid_argument("the scene has no field '" + field_ + "' that holds others");
+    throw std::invalid_argument("the scene has no field " + quoted(field_) + " that holds others");
   }
   [[noreturn]] void refuseItem() const {
     throw std::invalid_argument(nameOfItem() + " is not an object");
@@ -140,6 +161,7 @@ class SceneEvents {
   const CountingBuffer& source_;
   ItemLists& lists_;
   int depth_ = kOutside;
+  bool closed_ = false;
   std::set<std::string> seen_;
   std::string field_;  // of the scene, which is being read
   Fields scene_, item_;
@@ -159,8 +181,8 @@ SceneFile read(std::istream& in, const SceneLimits& limits) {
     const double time = events.time();
     finished = true;
     return {lists.scene(), time};
-  } catch (const Json::parse_error& fault) {
-    throw std::invalid_argument("at byte " + std::to_string(fault.byte) + ": " + fault.what());
+  } catch (const TextFault&) {
+    throw;
   } catch (const ItemFault& fault) {
     throw std::invalid_argument(before(lists.endOf(fault.list, fault.index)) + fault.what());
   } catch (const std::bad_alloc&) {

@@ -101,8 +101,12 @@ TEST_F(SceneFiles, MayLeaveFieldsOut) {
 TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
   const std::string head = R"({"format": "spherical_springs scene 1", )";
   const std::vector<std::pair<std::string, std::string>> table = {
-      {"", "parse error at line 1, column 1"},
-      {head + R"("particles": [{"position": [1, 0, 0]})", "parse error at line 1, column 78"},
+      {"", "at byte 1: the text ends before the scene does"},
+      {head + R"("particles": [{"position": [1, 0, 0]})",
+       "at byte 78: the text ends before the scene does"},
+      {head + R"("time)", "the text ends before the scene does"},
+      {"\xff\n", "at byte 1: this is not JSON: '?'"},
+      {head + R"("particles": [{"mass": NaN}]})", R"(this is not JSON: '"mass": N')"},
       {"[1, 2]", "the scene is not an object"},
       {R"({"particles": []})", "format is ''; allowed: spherical_springs scene 1"},
       {head + R"("particle": []})", "the scene has no field 'particle'"},
@@ -122,7 +126,7 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
        "particles[1].id is 3; allowed: 4 to 4294967294, rising"},
       {head + R"("particles": [{"id": -1, "position": [1, 0, 0]}]})",
        "particles[0].id is -1; allowed: an id"},
-      {head + R"("particles": [{"position": [1e999, 0, 0]}]})", "number overflow parsing '1e999'"},
+      {head + R"("particles": [{"position": [1e999, 0, 0]}]})", "the number 1e999 is too large"},
       {head + R"("angle_springs": [{"particles": [0, 1], "stiffness": 1}]})",
        "angle_springs[0].particles[0] is 0; allowed: the id of a particle"},
       {head + R"("particles": [], "particles": []})", "the scene has two fields 'particles'"},
@@ -131,12 +135,15 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
       {head + R"("particles": [[1, 0, 0]]})", "particles[0] is not an object"},
       {head + R"("particles": [{"position": [[1], 0, 0]}]})", "lists in lists"},
       {head + R"("particles": [{"position": [{}, 0, 0]}]})", "lists in lists"},
-      {head + R"("particles": []} {})", "parse error at line 1, column 58"},
+      {head + R"("particles": []} {})", "at byte 58: there is more after the end of the scene"},
+      {R"({"format": ")" + std::string(1000, 'x') + "\"}",
+       "format is '" + std::string(100, 'x') + "...' (1000 bytes); allowed: "},
   };
   for (const auto& [text, reason] : table) {
     const std::string refusal = refusalOf(text);
     EXPECT_NE(refusal.find(reason), std::string::npos) << text << "\n" << refusal;
     EXPECT_EQ(refusal.find(path_.string() + " is not a scene: "), 0) << refusal;
+    EXPECT_EQ(refusal.find("json"), refusal.rfind("json")) << "but in the name: " << refusal;
   }
 }
 
@@ -221,7 +228,20 @@ TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
   const fs::path missing = directory_ / "missing.json";
   EXPECT_EQ(fault_of(missing), "cannot read " + missing.string() + ": No such file or directory");
   EXPECT_EQ(fault_of(directory_), "cannot read " + directory_.string() + ": not a file");
-  EXPECT_THROW(writeScene(directory_ / "missing" / "scene.json", Scene(), 0), std::runtime_error);
+  const fs::path nowhere = directory_ / "missing" / "scene.json";
+  const fs::path long_name = directory_ / std::string(250, 'x');  // as long as one may be, nearly
+  const fs::path too_long = long_name.string() + "xxxxxx";
+  EXPECT_EQ(fault_of(too_long), "cannot read " + too_long.string() + ": File name too long");
+  for (const auto& [path, reason] : {std::pair{nowhere, "No such file or directory"},
+                                     {long_name, "File name too long"},
+                                     {too_long, "File name too long"}}) {
+    try {
+      writeScene(path, Scene(), 0);
+      ADD_FAILURE() << "no fault: " << path;
+    } catch (const std::runtime_error& fault) {
+      EXPECT_EQ(fault.what(), "cannot write " + path.string() + ": " + reason);
+    }
+  }
   EXPECT_TRUE(fs::is_empty(directory_));
 }
 

@@ -165,6 +165,22 @@ class TestPaths(FileTest):
         self.assert_refused('missing.json', 'load_scene', 'missing.json')
         self.assert_refused('x.json', 'save_scene', 'no_such_folder/x.json')
 
+    def test_names_that_are_too_long(self):
+        for length in (250, 300, 100000):
+            for service in ('load_scene', 'save_scene'):
+                before = self.node.get_scene()
+                with self.assertRaises(Refused) as refusal:
+                    getattr(self.node, service)(length * 'x')
+                message = str(refusal.exception)
+                if (length, service) == (250, 'load_scene'):
+                    self.assertIn('No such file', message)
+                else:
+                    self.assertIn('File name too long', message)
+                self.assertNotIn('.part', message)
+                self.assertNotIn('filesystem', message)
+                self.assertLess(len(message), 500)
+                self.assertEqual(exact(before), exact(self.node.get_scene()))
+
     def test_a_zero_byte(self):
         self.assert_refused('allowed', 'load_scene', 'good.json\0.json')
         self.assert_refused('allowed', 'save_scene', 'good.json\0.json')
@@ -196,6 +212,7 @@ class TestBadFiles(FileTest):
     def test_no_scene(self):
         for text in ('[]', '3', 'null', '{}', 'a text', '{"particles": []}'):
             self.assert_text_refused(text, 'bad.json')
+        self.assert_text_refused('a text', "at byte 1: this is not JSON: 'a'")
 
     def test_unknown_format(self):
         self.assert_altered_refused(lambda s: s.update(format='a scene of tomorrow'),
