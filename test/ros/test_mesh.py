@@ -331,15 +331,17 @@ class TestNode(MeshTest):
         self.node.step(steps=1)  # only while paused
 
     def test_launch_file(self):
+        self.directory = self.path("Anna's scans")
+        os.mkdir(self.directory)
         vertices, faces = bumpy(2)
-        self.write('surface.obj', vertices, faces)
+        self.write('left hand.obj', vertices, faces)
         ended = subprocess.run(
-            ['roslaunch', PACKAGE, 'mesh.launch', 'mesh:=surface.obj', 'uv:=uv.obj',
+            ['roslaunch', PACKAGE, 'mesh.launch', 'mesh:=left hand.obj', 'uv:=uv of it.obj',
              'name:=springs_of_mesh'],
             cwd=self.directory, env={**os.environ, 'PWD': self.directory}, timeout=4 * LONG,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.assertEqual({'surface.obj', 'surface_sphere.obj', 'uv.obj'},
+        self.assertEqual({'left hand.obj', 'left hand_sphere.obj', 'uv of it.obj'},
                          set(os.listdir(self.directory)), ended.stdout)
-        sphere, same_faces = mesh.read_obj(self.path('surface_sphere.obj'))
+        sphere, same_faces = mesh.read_obj(self.path('left hand_sphere.obj'))
         np.testing.assert_array_equal(faces, same_faces)
         self.assertGreater(mesh.solid_angles(sphere, faces).min(), 0)
