@@ -66,7 +66,7 @@ Points Mapping::run(const std::optional<Points>& start) {
     }
   }
   if (best.points.size() == 0 && !candidates.empty()) best = candidates.back();
-  if (best.points.size() == 0) throw std::runtime_error("no start evens out");
+  if (best.points.size() == 0) throw NoMap("no map without folds was found");
   return best.points;
 }
 

@@ -36,8 +36,9 @@ void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
   Eigen::Index largest = 0;
   const double share = shares.maxCoeff(&largest) / (4 * core::kPi);
   if (share > kLargestShare) {
-    throw std::invalid_argument("face " + std::to_string(largest) + " has " + text(100 * share) +
-                                " % of the area; allowed: up to " + text(100 * kLargestShare) +
+    throw std::invalid_argument("face " + std::to_string(largest) + " is to have " +
+                                text(100 * share) + " % of the sphere; allowed: up to " +
+                                text(100 * kLargestShare) +
                                 " %, as a triangle on the sphere has less than half of it");
   }
 }
@@ -74,18 +75,19 @@ Points directions(const TriangleMesh& mesh, const Points& start) {
 
 }  // namespace
 
-Eigen::VectorXd faceShares(const Eigen::VectorXd& weights) {
+Eigen::VectorXd faceShares(const Eigen::VectorXd& areas) {
   constexpr double kLeast = 1e-6;  // of the mean
   double largest = 0;
-  for (Eigen::Index f = 0; f < weights.size(); ++f) {
-    if (!(weights[f] >= 0 && std::isfinite(weights[f]))) {
-      throw std::invalid_argument("weight of face " + std::to_string(f) + " is " +
-                                  text(weights[f]) + "; allowed: 0 or more");
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    if (!(areas[f] >= 0 && std::isfinite(areas[f]))) {
+      throw std::invalid_argument("the area of face " + std::to_string(f) +
+                                  ", with its density, is " + text(areas[f]) +
+                                  "; allowed: 0 or more, finite");
     }
-    largest = std::max(largest, weights[f]);
+    largest = std::max(largest, areas[f]);
   }
-  if (largest == 0) throw std::invalid_argument("the weights of all faces are 0");
-  const Eigen::VectorXd scaled = weights / largest;
+  if (largest == 0) throw std::invalid_argument("the areas of all faces are 0");
+  const Eigen::VectorXd scaled = areas / largest;
   const Eigen::VectorXd shares = scaled.cwiseMax(kLeast * scaled.mean());
   return shares * (4 * core::kPi / shares.sum());
 }

@@ -22,6 +22,7 @@
 namespace spherical_springs::relax_mesh {
 namespace {
 
+namespace fs = std::filesystem;
 using mesh::FaceDistortion;
 
 /// Of angle springs beside solid-angle springs: these alone leave some freedom.
@@ -47,9 +48,16 @@ void print(const char* when, const FaceDistortion& faces, double seconds) {
   std::fflush(stdout);
 }
 
-Points mapOf(const Task& task, double angle_weight) {
+[[noreturn]] void refuseWithoutMap(const fs::path& surface) {
+  throw std::runtime_error(
+      surface.string() +
+      ": no map without folds was found, and no file has been written; to help it, begin from one "
+      "(--sphere), or give a mesh with fewer thin triangles and areas that differ less");
+}
+
+Points mapOf(const Task& task, const Options& asked) {
   mesh::MapOptions options;
-  options.angle_weight = angle_weight;
+  options.angle_weight = asked.angle_weight;
   options.max_time = Times(task.surface.vertices.cols()).map;
   options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   ProgressLine progress("mapping");
@@ -57,10 +65,17 @@ Points mapOf(const Task& task, double angle_weight) {
     progress.show(fraction);
     return !interrupted() && ros::ok();
   };
-  Points map = task.start ? sphereMap(task.surface, task.shares, *task.start, options)
-                          : sphereMap(task.surface, task.shares, options);
-  throwIfInterrupted();
-  return map;
+  try {
+    Points map = about(task.shares_from, [&] {
+      return task.start ? sphereMap(task.surface, task.shares, *task.start, options)
+                        : sphereMap(task.surface, task.shares, options);
+    });
+    throwIfInterrupted();
+    return map;
+  } catch (const mesh::NoMap&) {
+    throwIfInterrupted();
+    refuseWithoutMap(asked.mesh);
+  }
 }
 
 bool coversOnce(const mesh::Distortion& d) {
@@ -98,7 +113,7 @@ void run(const Options& options) {
                 << std::endl;
     }
   }
-  Points map = mapOf(task, options.angle_weight);
+  Points map = mapOf(task, options);
   FaceDistortion faces = distortionOf(map);
   if (!task.start) print("before", faces, secondsSince(begin));
 
@@ -110,7 +125,7 @@ void run(const Options& options) {
     map = relaxed;
     faces = after;
   }
-  if (!coversOnce(summary(faces))) throw std::runtime_error("no map without folds was found");
+  if (!coversOnce(summary(faces))) refuseWithoutMap(options.mesh);
   write(options, task, map, faces);
   print("after", faces, secondsSince(begin));
 }

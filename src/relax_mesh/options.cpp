@@ -5,6 +5,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "../files.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {
@@ -31,9 +32,12 @@ po::options_description described(Options& options) {
   add("uv", path(options.uv),
       "OBJ file to write: the surface with longitude and latitude as texture coordinates");
   add("angle-weight", po::value(&options.angle_weight)->default_value(0, "0"),
-      "0 keeps areas alone; more keeps angles too");
+      "0: every face gets its share of the area, whatever becomes of its angles; the more (up to "
+      "1e6), the better corner angles are kept, and the worse areas");
   add("density", path(options.density),
-      "file of positive numbers, one a face: what a face weighs for its area");
+      "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice "
+      "the "
+      "area on the sphere that it would get with 1");
   add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");
   add("node", po::value(&options.node)->default_value("spherical_springs"),
       "name of the node that relaxes");
@@ -41,8 +45,8 @@ po::options_description described(Options& options) {
 }
 
 [[noreturn]] void refuse(const char* option, const fs::path& path, const char* allowed) {
-  throw std::invalid_argument(std::string(option) + " is '" + path.string() +
-                              "'; allowed: " + allowed);
+  throw std::invalid_argument(std::string(option) + " is " + core::quoted(path.string()) +
+                              "; allowed: " + allowed);
 }
 
 /// What is to be written, none of it over anything that is read or written as well.
@@ -50,7 +54,8 @@ void requireWritable(const Options& options) {
   const auto whole = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path)); };
   std::vector<fs::path> taken;
   for (const fs::path* read : {&options.mesh, &options.sphere, &options.density}) {
-    if (!read->empty()) taken.push_back(whole(*read));
+    if (read->empty()) continue;
+    taken.push_back(core::orFailTo("read", *read, [&] { return whole(*read); }));
   }
   const auto require = [&](const char* option, const fs::path& path) {
     if (!path.has_filename() || (fs::exists(path) && !fs::is_regular_file(path))) {
@@ -64,9 +69,11 @@ void requireWritable(const Options& options) {
     }
     taken.push_back(whole(path));
   };
-  require("--output", options.output);
-  if (!options.uv.empty()) require("--uv", options.uv);
-  if (!options.metrics.empty()) require("--metrics", options.metrics);
+  core::orFailTo("write", options.output, [&] { require("--output", options.output); });
+  for (const auto& [option, path] : {std::pair<const char*, const fs::path&>{"--uv", options.uv},
+                                     {"--metrics", options.metrics}}) {
+    if (!path.empty()) core::orFailTo("write", path, [&] { require(option, path); });
+  }
 }
 
 }  // namespace

@@ -14,28 +14,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts the file's name before the reason why what it holds is refused.
-template <class Read>
-auto about(const fs::path& path, const Read& read) {
-  try {
-    return read();
-  } catch (const std::invalid_argument& fault) {
-    throw std::invalid_argument(path.string() + ": " + fault.what());
-  }
-}
-
 mesh::TriangleMesh readSurface(const fs::path& path) {
   mesh::TriangleMesh surface = mesh::readObj(path);
   about(path, [&] { mesh::requireTopologicalSphere(surface); });
   return surface;
 }
 
-Eigen::VectorXd weightsOf(const Options& options, const mesh::TriangleMesh& surface) {
-  Eigen::VectorXd areas = mesh::faceAreas(surface);
-  if (options.density.empty()) return areas;
+Eigen::VectorXd readShares(const Options& options, const mesh::TriangleMesh& surface) {
+  const Eigen::VectorXd areas = mesh::faceAreas(surface);
+  const Eigen::VectorXd shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
+  if (options.density.empty()) return shares;
   std::ifstream in = core::openToRead(options.density);
-  return about(options.density,
-               [&] { return areas.cwiseProduct(mesh::readDensities(in, areas.size())).eval(); });
+  return about(options.density, [&] {
+    return mesh::faceShares(areas.cwiseProduct(mesh::readDensities(in, areas.size())));
+  });
 }
 
 Points directions(const Points& vertices) {
@@ -65,8 +57,8 @@ Points readStart(const fs::path& path, const mesh::Faces& faces) {
 Task readTask(const Options& options) {
   Task task;
   task.surface = readSurface(options.mesh);
-  const Eigen::VectorXd weights = weightsOf(options, task.surface);
-  task.shares = about(options.mesh, [&] { return mesh::faceShares(weights); });
+  task.shares_from = options.density.empty() ? options.mesh : options.density;
+  task.shares = readShares(options, task.surface);
   if (!options.sphere.empty()) task.start = readStart(options.sphere, task.surface.faces);
   return task;
 }

@@ -1,7 +1,9 @@
 // What a command line asks for, read and checked.
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <stdexcept>
 
 #include "options.h"
 #include "spherical_springs/mesh/triangle_mesh.h"
@@ -12,9 +14,20 @@ using core::Points;
 
 struct Task {
   mesh::TriangleMesh surface;
-  Eigen::VectorXd shares;       ///< of the sphere, one a face, summing to 4 pi [sr]
-  std::optional<Points> start;  ///< one unit vector a vertex
+  Eigen::VectorXd shares;             ///< of the sphere, one a face, summing to 4 pi [sr]
+  std::filesystem::path shares_from;  ///< the file that has the last word on them
+  std::optional<Points> start;        ///< one unit vector a vertex
 };
+
+/// Puts the file's name before the reason why what it holds is refused.
+template <class Use>
+auto about(const std::filesystem::path& path, const Use& use) {
+  try {
+    return use();
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(path.string() + ": " + fault.what());
+  }
+}
 
 /// @throw std::invalid_argument or std::runtime_error, with the file and the reason, for a surface
 /// that is no topological sphere or has no area, for densities that are not one a face, and for a

@@ -150,7 +150,7 @@ TEST(FaceShares, HaveAFloor) {
   EXPECT_NEAR(shares.sum(), 4 * core::kPi, 1e-12);
 }
 
-TEST(FaceShares, RefuseFaultyWeights) {
+TEST(FaceShares, RefuseFaultyAreas) {
   EXPECT_THROW(faceShares(Eigen::Vector2d(1, -1)), std::invalid_argument);
   EXPECT_THROW(faceShares(Eigen::Vector2d(0, 0)), std::invalid_argument);
   EXPECT_THROW(faceShares(Eigen::Vector2d(1, std::numeric_limits<double>::infinity())),

@@ -59,6 +59,19 @@ TEST(Options, AreRefusedWithAReason) {
   EXPECT_EQ("--uv is 'u/'; allowed: the name of a file", reasonAgainst({"--uv", "u/"}));
 }
 
+TEST(Options, SayWhyAPathIsNone) {
+  const std::string name(300, 'x');
+  for (const char* option : {"--uv", "--metrics", "--density"}) {
+    const std::string what = option == std::string("--density") ? "read " : "write ";
+    try {
+      reasonAgainst({option, name});
+      ADD_FAILURE() << option;
+    } catch (const std::runtime_error& fault) {
+      EXPECT_EQ("cannot " + what + name + ": File name too long", fault.what());
+    }
+  }
+}
+
 TEST(Options, NameNothingTwice) {
   const std::string allowed = "; allowed: a file of its own, not one that another option names";
   EXPECT_EQ("--uv is './b.obj'" + allowed, reasonAgainst({"--uv", "./b.obj"}));

@@ -209,12 +209,21 @@ class TestRefusals(MeshTest):
     def test_options(self):
         vertices, faces = bumpy(1)
         surface = self.write('surface.obj', vertices, faces)
-        with open(self.path('density'), 'w') as file:
-            file.write('1\n' * (len(faces) - 1) + '-2\n')
+        for name, last in (('density', '-2'), ('steep', '1e9'), ('endless', '1e308')):
+            with open(self.path(name), 'w') as file:
+                file.write('1\n' * (len(faces) - 1) + last + '\n')
+        huge = self.write('huge.obj', 9 * vertices, faces)
         for options, pattern in (
                 ({'mesh': self.path('no.obj')}, 'no.obj: No such file'),
                 ({'mesh': self.directory}, 'not a file'),
-                ({'density': self.path('density')}, 'density 79 is -2; allowed: a positive'),
+                ({'density': self.path('density')}, '/density: density 79 is -2; allowed: a positive'),
+                ({'density': self.path('steep')},
+                 r'/steep: face 79 is to have 99\.\d* % of the sphere; allowed: up to 45 %'),
+                ({'density': self.path('endless'), 'mesh': huge},
+                 '/endless: the area of face 79, with its density, is inf; allowed: 0 or more'),
+                ({'density': self.path('none')}, '/none: No such file'),
+                ({'mesh': self.path(300 * 'x')}, 'cannot read .*x: File name too long'),
+                ({'uv': self.path(300 * 'x')}, 'cannot write .*x: File name too long'),
                 ({'sphere': self.write('finer.obj', *bumpy(2))}, 'faces are not those'),
                 ({'sphere': self.write('reverse.obj', vertices, faces[::-1])}, 'faces are not those'),
                 ({'sphere': self.write('zero.obj', 0 * vertices, faces)}, 'vertex 0 is at'),

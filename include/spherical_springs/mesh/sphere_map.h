@@ -2,15 +2,21 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 
 #include "spherical_springs/mesh/triangle_mesh.h"
 
 namespace spherical_springs::mesh {
 
-/// Each face's share of the sphere [sr], in proportion to `weights` (one a face, such as its area),
-/// summing to 4 pi. Shares below a millionth of the mean are raised to that.
-/// @throw std::invalid_argument for a weight that is negative or not finite, or where all are 0.
-Eigen::VectorXd faceShares(const Eigen::VectorXd& weights);
+/// Each face's share of the sphere [sr], in proportion to `areas` (one a face: its own, or that
+/// times a density), summing to 4 pi. Shares below a millionth of the mean are raised to that.
+/// @throw std::invalid_argument for an area that is negative or not finite, or where all are 0.
+Eigen::VectorXd faceShares(const Eigen::VectorXd& areas);
+
+/// That no map without folds was found, from any start.
+class NoMap : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct MapOptions {
   /// 0: areas alone; more keeps faces nearer to equal corner angles, at the expense of areas.
@@ -27,7 +33,7 @@ struct MapOptions {
 /// One unit vector a vertex: a map of the mesh to the sphere on which every face is oriented as in
 /// the mesh and whose faces cover the sphere once, with areas as near to `shares` as can be found.
 /// @throw std::invalid_argument where `requireTopologicalSphere` does, or for shares that are not
-/// one a face, positive and at most 45 % of the sphere, or for options outside their range.
+/// one a face, positive and at most 45 % of the sphere, or for options outside their range; NoMap.
 Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
                  const MapOptions& options = {});
 
