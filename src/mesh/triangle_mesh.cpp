@@ -13,4 +13,16 @@ Eigen::VectorXd faceAreas(const TriangleMesh& mesh) {
   return areas;
 }
 
+double volume(const TriangleMesh& mesh) {
+  const Vector3 middle = mesh.vertices.rowwise().mean();  // near to it products round least
+  double six_times = 0;
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
+    const Vector3 a = mesh.vertices.col(mesh.faces(0, f)) - middle;
+    const Vector3 b = mesh.vertices.col(mesh.faces(1, f)) - middle;
+    const Vector3 c = mesh.vertices.col(mesh.faces(2, f)) - middle;
+    six_times += a.dot(b.cross(c));
+  }
+  return six_times / 6;
+}
+
 }  // namespace spherical_springs::mesh

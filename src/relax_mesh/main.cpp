@@ -103,6 +103,12 @@ void run(const Options& options) {
   const auto distortionOf = [&](const Points& map) {
     return faceDistortion(task.surface, task.shares, map);
   };
+  if (task.inside_out) {
+    std::cerr << "warning: the faces of " << options.mesh.string()
+              << " look inwards: seen from outside they turn clockwise, and the map shows them "
+                 "mirrored; with two corners of each face swapped it does not"
+              << std::endl;
+  }
   SpringsNode node(options.node);
   const auto begin = ros::WallTime::now();
   if (task.start) {

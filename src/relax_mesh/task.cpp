@@ -57,6 +57,7 @@ Points readStart(const fs::path& path, const mesh::Faces& faces) {
 Task readTask(const Options& options) {
   Task task;
   task.surface = readSurface(options.mesh);
+  task.inside_out = mesh::volume(task.surface) < 0;
   task.shares_from = options.density.empty() ? options.mesh : options.density;
   task.shares = readShares(options, task.surface);
   if (!options.sphere.empty()) task.start = readStart(options.sphere, task.surface.faces);

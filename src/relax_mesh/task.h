@@ -17,6 +17,7 @@ struct Task {
   Eigen::VectorXd shares;             ///< of the sphere, one a face, summing to 4 pi [sr]
   std::filesystem::path shares_from;  ///< the file that has the last word on them
   std::optional<Points> start;        ///< one unit vector a vertex
+  bool inside_out = false;            ///< whether the surface's faces look inwards
 };
 
 /// Puts the file's name before the reason why what it holds is refused.

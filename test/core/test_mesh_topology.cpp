@@ -150,6 +150,17 @@ TEST(FaceShares, HaveAFloor) {
   EXPECT_NEAR(shares.sum(), 4 * core::kPi, 1e-12);
 }
 
+TEST(Volume, IsThatOfTheBodyAndNegativeInsideOut) {
+  TriangleMesh mesh = testing::tetrahedron();
+  const Vector3 a = mesh.vertices.col(0);
+  const auto edge = [&](int i) -> Vector3 { return mesh.vertices.col(i) - a; };
+  const double expected = std::abs(edge(1).dot(edge(2).cross(edge(3)))) / 6;
+  mesh.vertices.colwise() += Vector3(1e3, 2e3, -3e3);
+  EXPECT_NEAR(volume(mesh), expected, 1e-9);
+  mesh.faces.row(0).swap(mesh.faces.row(1));
+  EXPECT_NEAR(volume(mesh), -expected, 1e-9);
+}
+
 TEST(FaceShares, RefuseFaultyAreas) {
   EXPECT_THROW(faceShares(Eigen::Vector2d(1, -1)), std::invalid_argument);
   EXPECT_THROW(faceShares(Eigen::Vector2d(0, 0)), std::invalid_argument);

@@ -117,6 +117,16 @@ class TestShapes(MeshTest):
         ratios = self.assert_is_map(faces, density * mesh.areas(vertices, faces), outcome)
         self.assertLess(ratios.std(), 0.05)
 
+    def test_inside_out(self):
+        vertices, faces = bumpy()
+        faces = faces[:, ::-1]
+        surface = self.write('surface.obj', vertices, faces)
+        outcome = relax_mesh(mesh=surface, output=self.path('sphere.obj'))
+        self.assertEqual(0, outcome.code, outcome.error)
+        self.assertRegex(outcome.error,
+                         r'\Awarning: the faces of ' + re.escape(surface) + ' look inwards.*\Z')
+        self.assert_is_map(faces, mesh.areas(vertices, faces), outcome)
+
     def test_angle_weight(self):
         vertices, faces = bumpy()
         surface = self.write('surface.obj', vertices, faces)

@@ -22,4 +22,7 @@ struct TriangleMesh {
 /// One a face [m^2].
 Eigen::VectorXd faceAreas(const TriangleMesh& mesh);
 
+/// Of a closed mesh, negative where its faces look inwards [m^3].
+double volume(const TriangleMesh& mesh);
+
 }  // namespace spherical_springs::mesh
