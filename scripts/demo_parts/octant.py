@@ -4,7 +4,7 @@ import collections
 import numpy as np
 from spherical_springs.srv import Step
 
-TIMES = (0.0, 0.5, 1.0, 1.5, 2.5, 60.0)  # [s]
+TIMES = (0.0, 1.5, 3.0, 5.0, 8.0, 200.0)  # [s]
 TIME_STEP = 0.001  # [s], the node's default
 SIDES = ((0, 1), (1, 2), (2, 0))
 
@@ -30,7 +30,7 @@ def watch(node):
         arcs = [arc(points[a], points[b]) for a, b in SIDES]
         moments.append(Moment(step.time, points, arcs))
         energies = step.energies
-        print("   %5.2f  %8.3f  %8.3f  %8.3f     %10.3e %10.3e %10.3e" % (
+        print("   %6.2f %8.3f  %8.3f  %8.3f     %10.3e %10.3e %10.3e" % (
             step.time, *np.degrees(arcs), energies.kinetic, energies.potential,
             energies.dissipated))
     error = np.abs(np.array(arcs) - np.pi / 2).max()

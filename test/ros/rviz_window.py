@@ -19,8 +19,10 @@ MISSING = [program for program in PROGRAMS if shutil.which(program) is None]
 BACKGROUND = (250, 250, 252)
 FIELD_OF_VIEW = math.pi / 4
 DISTANCE = 3
-TOWARDS_EYE = np.array([1, 1, 1]) / 3 ** 0.5
-RIGHT = np.array([-1, 1, 0]) / 2 ** 0.5
+PITCH, YAW = 0.26, 0.28
+TOWARDS_EYE = np.array([math.cos(PITCH) * math.cos(YAW), math.cos(PITCH) * math.sin(YAW),
+                        math.sin(PITCH)])
+RIGHT = np.array([-math.sin(YAW), math.cos(YAW), 0])
 UP = np.cross(TOWARDS_EYE, RIGHT)
 
 
@@ -107,9 +109,9 @@ class Picture:
         image.imsave(path, self._pixels[top:bottom, left:right])
 
 
-def visible(point):
+def visible(point, margin=0.8):
     """Whether a point of the sphere is in front, and not near the outline."""
-    return np.asarray(point) @ TOWARDS_EYE > 1.8 / DISTANCE
+    return np.asarray(point) @ TOWARDS_EYE > (1 + margin) / DISTANCE
 
 
 def name_of(colour):
