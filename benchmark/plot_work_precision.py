@@ -16,6 +16,7 @@ COLOURS = {'euler': '#E69F00', 'verlet': '#0072B2', 'fourth_order': '#009E73',
 MARKERS = {'euler': 'o', 'verlet': 's', 'fourth_order': '^', 'implicit_euler': 'v',
            'report': 'x', 'newton': 's', 'dynamics': '.', 'fire': '.'}
 INTEGRATORS = ('euler', 'verlet', 'fourth_order', 'implicit_euler')
+COLUMNS = 3  # of the picture, which is as wide as a page
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 
 
@@ -55,31 +56,41 @@ def draw_errors(axes, rows, field, floor):
     axes.grid(True, which='major', linewidth=0.3)
 
 
-def draw(rows, references, torques, path):
-    count = len(rows)
-    figure, grid = plt.subplots(2, count + 1, figsize=(3.2 * (count + 1), 6.4),
-                                constrained_layout=True)
-    for column, (scene, methods) in enumerate(rows.items()):
-        draw_errors(grid[0][column], methods, 'trajectory_error', references[scene])
-        draw_errors(grid[1][column], methods, 'energy_error', 1e-16)
-        grid[0][column].set_title(scene)
-        grid[1][column].set_xlabel('wall time / simulated time')
-    grid[0][0].set_ylabel('error of the positions [rad]')
-    grid[1][0].set_ylabel('relative error of the energy')
-    relaxing = grid[0][count]
+def draw_relaxation(axes, torques):
     for method, points in torques.items():
-        relaxing.loglog(*zip(*points), marker=MARKERS[method], color=COLOURS[method],
-                        markersize=3, linewidth=1, label=method)
-    relaxing.set_title('relaxing the mesh')
-    relaxing.set_xlabel('wall time [s]')
-    relaxing.set_ylabel('largest torque [N m]')
-    relaxing.legend(fontsize=8)
-    relaxing.grid(True, which='major', linewidth=0.3)
-    grid[1][count].axis('off')
+        axes.loglog(*zip(*points), marker=MARKERS[method], color=COLOURS[method],
+                    markersize=3, linewidth=1, label=method)
+    axes.set_title('relaxing the mesh')
+    axes.set_xlabel('wall time [s]')
+    axes.set_ylabel('largest torque [N m]')
+    axes.legend()
+    axes.grid(True, which='major', linewidth=0.3)
+
+
+def draw(rows, references, torques, path):
+    """Scenes side by side, errors of positions above those of the energy; then the relaxation."""
+    plt.rcParams['font.size'] = 12
+    blocks = -(-(len(rows) + 1) // COLUMNS)
+    figure, grid = plt.subplots(2 * blocks, COLUMNS, figsize=(4 * COLUMNS, 6.4 * blocks),
+                                constrained_layout=True)
+    columns = [grid[2 * block:2 * block + 2, column]
+               for block in range(blocks) for column in range(COLUMNS)]
+    for (above, below), (scene, methods) in zip(columns, rows.items()):
+        draw_errors(above, methods, 'trajectory_error', references[scene])
+        draw_errors(below, methods, 'energy_error', 1e-16)
+        above.set_title(scene)
+        below.set_xlabel('wall time / simulated time')
+    for above, below in columns[:len(rows):COLUMNS]:
+        above.set_ylabel('error of the positions [rad]')
+        below.set_ylabel('relative error of the energy')
+    draw_relaxation(columns[len(rows)][0], torques)
+    for axes in [columns[len(rows)][1], *sum(map(list, columns[len(rows) + 1:]), [])]:
+        axes.axis('off')
     handles = {}
-    for axes in grid[0][:count]:
-        handles.update(zip(*reversed(axes.get_legend_handles_labels())))
-    grid[1][count].legend(handles.values(), handles.keys(), loc='center', frameon=False)
+    for above, _ in columns[:len(rows)]:
+        handles.update(zip(*reversed(above.get_legend_handles_labels())))
+    columns[len(rows)][1].legend(handles.values(), handles.keys(), loc='center', frameon=False,
+                                 title='all other diagrams')
     figure.savefig(path, dpi=110)
 
 
