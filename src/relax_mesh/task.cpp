@@ -22,7 +22,7 @@ mesh::TriangleMesh readSurface(const fs::path& path) {
 
 Eigen::VectorXd readShares(const Options& options, const mesh::TriangleMesh& surface) {
   const Eigen::VectorXd areas = mesh::faceAreas(surface);
-  const Eigen::VectorXd shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
+  Eigen::VectorXd shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
   if (options.density.empty()) return shares;
   std::ifstream in = core::openToRead(options.density);
   return about(options.density, [&] {
