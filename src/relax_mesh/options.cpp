@@ -69,11 +69,12 @@ void requireWritable(const Options& options) {
     }
     taken.push_back(whole(path));
   };
-  core::orFailTo("write", options.output, [&] { require("--output", options.output); });
-  for (const auto& [option, path] : {std::pair<const char*, const fs::path&>{"--uv", options.uv},
-                                     {"--metrics", options.metrics}}) {
-    if (!path.empty()) core::orFailTo("write", path, [&] { require(option, path); });
-  }
+  const auto requireOrFail = [&](const char* option, const fs::path& path) {
+    core::orFailTo("write", path, [&] { require(option, path); });
+  };
+  requireOrFail("--output", options.output);
+  if (!options.uv.empty()) requireOrFail("--uv", options.uv);
+  if (!options.metrics.empty()) requireOrFail("--metrics", options.metrics);
 }
 
 }  // namespace
