@@ -91,9 +91,7 @@ Points lifted(const SchnyderWood& wood, const Weights& weights) {
 }  // namespace
 
 FoldFreeStart foldFreeStart(const Faces& faces, const HalfEdges& edges, std::size_t vertices,
-                            const Eigen::VectorXd& shares) {
-  Eigen::Index cut;
-  shares.maxCoeff(&cut);
+                            const Eigen::VectorXd& shares, Eigen::Index cut) {
   const auto wood = schnyderWood(edges, vertices, static_cast<HalfEdges::Index>(cut));
 
   FoldFreeStart start;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -83,13 +84,29 @@ double Mapping::wantedSpread() const {
   return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
 
+/// Without the largest face, or, where that does not become one again, the next largest.
+std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
+  constexpr std::size_t kMostCuts = 8;
+  std::vector<Eigen::Index> faces(level.shares.size());
+  std::iota(faces.begin(), faces.end(), 0);
+  std::stable_sort(faces.begin(), faces.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return level.shares[a] > level.shares[b];
+  });
+  faces.resize(std::min(faces.size(), kMostCuts));
+  for (const Eigen::Index cut : faces) {
+    if (auto points = coarsest(level, cut)) return points;
+    if (has_map_ && ended_) break;
+  }
+  return {};
+}
+
 /// Whatever the time, while there is no other map: only when the face that has been cut has shrunk,
 /// it is one again.
-std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
+std::optional<Points> Mapping::coarsest(const MeshLevel& level, Eigen::Index cut) {
   constexpr int kMostIterations = 600;
   constexpr double kLeastShape = 1e-4;
   const FoldFreeStart start =
-      foldFreeStart(level.faces, HalfEdges(level.faces), level.vertex_count, level.shares);
+      foldFreeStart(level.faces, HalfEdges(level.faces), level.vertex_count, level.shares, cut);
   MapEnergy energy(start.faces, start.shares, start.points, options_.threads);
   energy.setWeights(FaceWeights::root_of_share);
   MapDescent descent(energy, options_.threads);

@@ -33,6 +33,7 @@ class Mapping {
 
   void add(Candidate candidate, Candidates& candidates);
   std::optional<Points> coarsest(const MeshLevel& level);
+  std::optional<Points> coarsest(const MeshLevel& level, Eigen::Index cut);
   std::optional<Candidate> prepared(std::int32_t size);
   Candidate roundedOff(const Points& points);
   Candidate finished(const Points& points);

@@ -166,6 +166,17 @@ TEST(SphereMap, OfASphereFromItselfIsItself) {
   EXPECT_EQ(sphereMap(mesh, shares, mesh.vertices, patient(1e-9)), mesh.vertices);
 }
 
+// Two vertices on one spot, and a face of a third of the area, which does not become less than half
+// of the sphere in the start without it.
+TEST(SphereMap, OfAnOctahedronWhoseLargestFaceStaysLarge) {
+  const TriangleMesh mesh = testing::meshOf(
+      {{2, 0, 0}, {-1, 0, 0}, {0, 2, 0}, {0, -1, 0}, {0, -1, 0}, {0, 0, 0.5}},
+      {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}});
+  const Points points = sphereMap(mesh, sharesOf(mesh), patient(1e-3));
+  EXPECT_TRUE(coversOnce(mesh.faces, points));
+  EXPECT_LT(spread(mesh, sharesOf(mesh), points), 1e-3);
+}
+
 TEST(SphereMap, GoesOnFromAStart) {
   const TriangleMesh mesh = testing::bumps(3, 2);
   const Eigen::VectorXd shares = sharesOf(mesh);

@@ -18,7 +18,9 @@ namespace {
 Eigen::VectorXd sharesOf(const TriangleMesh& mesh) { return faceShares(faceAreas(mesh)); }
 
 FoldFreeStart startOf(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
-  return foldFreeStart(mesh.faces, HalfEdges(mesh.faces), mesh.vertices.cols(), shares);
+  Eigen::Index largest = 0;
+  shares.maxCoeff(&largest);
+  return foldFreeStart(mesh.faces, HalfEdges(mesh.faces), mesh.vertices.cols(), shares, largest);
 }
 
 TEST(SchnyderWood, HasThreeTreesThatHoldEveryInnerEdgeOnce) {
