@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../curve_order.h"
 #include "../parallel.h"
@@ -81,12 +82,16 @@ void MapEnergy::setWeights(FaceWeights weights) {
 }
 
 void MapEnergy::place(const Points& points) {
-  points_.resize(vertices_.size());
-  frames_.resize(vertices_.size());
-  for (std::size_t n = 0; n < vertices_.size(); ++n) {
-    points_[n] = points.col(vertices_[n]);
-    frames_[n] = core::tangentFrame(points_[n]);
-  }
+  std::vector<Vector3> in_order(vertices_.size());
+  for (std::size_t n = 0; n < vertices_.size(); ++n) in_order[n] = points.col(vertices_[n]);
+  put(std::move(in_order));
+}
+
+void MapEnergy::put(std::vector<Vector3> points) {
+  points_ = std::move(points);
+  frames_.resize(points_.size());
+  core::parallelFor(points_.size(), threads_,
+                    [&](std::ptrdiff_t n) { frames_[n] = core::tangentFrame(points_[n]); });
 }
 
 Points MapEnergy::points() const {
@@ -105,11 +110,7 @@ std::vector<Vector3> MapEnergy::moved(const Eigen::VectorXd& step) const {
 
 double MapEnergy::valueAfter(const Eigen::VectorXd& step) const { return valueAt(moved(step)); }
 
-void MapEnergy::move(const Eigen::VectorXd& step) {
-  points_ = moved(step);
-  core::parallelFor(points_.size(), threads_,
-                    [&](std::ptrdiff_t n) { frames_[n] = core::tangentFrame(points_[n]); });
-}
+void MapEnergy::move(const Eigen::VectorXd& step) { put(moved(step)); }
 
 double MapEnergy::valueAt(const std::vector<Vector3>& points) const {
   Eigen::VectorXd areas(faceCount());
@@ -205,11 +206,14 @@ void MapEnergy::moveAlone(std::size_t n) {
 }
 
 void MapEnergy::sweep() {
+  std::vector<Vector3> before = points_;
   order_.apart.forEach(threads_, [&](std::uint32_t block) {
     for (std::uint32_t n = order_.first_node[block]; n < order_.first_node[block + 1]; ++n) {
       moveAlone(n);
     }
   });
+  if (valueAt(points_) < kInfinity) return;
+  put(std::move(before));  // positive faces round a vertex alone may cover the sphere twice
 }
 
 }  // namespace spherical_springs::mesh

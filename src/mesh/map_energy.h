@@ -65,6 +65,7 @@ class MapEnergy {
   Eigen::Vector2d ownStep(std::size_t n) const;
   double ownValue(std::size_t n, const Vector3& point) const;
   void moveAlone(std::size_t n);
+  void put(std::vector<Vector3> points);
   std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
   int threads_;

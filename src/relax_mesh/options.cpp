@@ -35,8 +35,7 @@ po::options_description described(Options& options) {
       "0: every face gets its share of the area, whatever becomes of its angles; the more (up to "
       "1e6), the better corner angles are kept, and the worse areas");
   add("density", path(options.density),
-      "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice "
-      "the "
+      "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice the "
       "area on the sphere that it would get with 1");
   add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");
   add("node", po::value(&options.node)->default_value("spherical_springs"),
