@@ -1,0 +1,136 @@
+"""relax_mesh as a client of the node: the scene, other clients, progress, interruption, launch."""
+
+import os
+import pty
+import select
+import signal
+import subprocess
+import threading
+
+import numpy as np
+import rospy
+from spherical_springs.msg import Status
+from spherical_springs.srv import (
+    AddParticles, AddParticlesResponse, AddSprings, GetScene, Relax, RelaxResponse)
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+
+from mesh_test import MeshTest
+from node_client import LONG, PACKAGE
+from relax_mesh import command, relax_mesh
+from scenes import particle
+from shapes import bumpy, mesh
+
+
+class EndlessNode:
+    """Stands for a node whose relaxation ends only when it is cancelled, and whose scene is then
+    empty."""
+
+    def __init__(self, name):
+        self.relaxing, self.cancelled = threading.Event(), threading.Event()
+        self.services = [rospy.Service(name + '/' + service, kind, answer)
+                         for service, kind, answer in (
+            ('set_running', SetBool, lambda _: SetBoolResponse(success=True)),
+            ('clear', Trigger, lambda _: TriggerResponse(success=True)),
+            ('add_particles', AddParticles, lambda request: AddParticlesResponse(
+                success=True, ids=range(len(request.particles)))),
+            ('add_springs', AddSprings, lambda _: {'success': True}),
+            ('get_scene', GetScene, lambda _: {'success': True}),
+            ('relax', Relax, self.relax),
+            ('cancel', Trigger, self.cancel))]
+
+    def relax(self, _):
+        self.relaxing.set()
+        return RelaxResponse(success=self.cancelled.wait(2 * LONG))
+
+    def cancel(self, _):
+        self.cancelled.set()
+        return TriggerResponse(success=True)
+
+    def shutdown(self):
+        for service in self.services:
+            service.shutdown()
+
+
+class TestInterruption(MeshTest):
+    def test_relaxation_is_cancelled_and_nothing_written(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        surface = self.write('surface.obj', *bumpy(1))
+        for which in (signal.SIGINT, signal.SIGTERM):
+            node.relaxing.clear()
+            node.cancelled.clear()
+            process = subprocess.Popen(
+                command(mesh=surface, output=self.path('sphere.obj'), uv=self.path('uv.obj'),
+                        node='/endless'), stderr=subprocess.PIPE, text=True)
+            self.assertTrue(node.relaxing.wait(LONG))
+            self.assertFalse(node.cancelled.is_set())
+            process.send_signal(which)
+            error = process.communicate(timeout=LONG)[1]
+            self.assertTrue(node.cancelled.is_set())
+            self.assertEqual((1, 'error: interrupted; no file has been written\n'),
+                             (process.returncode, error))
+            self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+
+class TestOtherClients(MeshTest):
+    def test_who_changes_the_scene_meanwhile_is_noticed(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        node.cancelled.set()
+        outcome = relax_mesh(mesh=self.write('surface.obj', *bumpy(1)), node='/endless',
+                             output=self.path('sphere.obj'))
+        self.assertEqual((1, 'error: another client has changed the scene of /endless meanwhile; '
+                          'relax_mesh needs a node to itself'), (outcome.code, outcome.error))
+        self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+
+class TestProgress(MeshTest):
+    def test_a_terminal_shows_how_far_it_has_come(self):
+        node = EndlessNode('/endless')
+        self.addCleanup(node.shutdown)
+        status = rospy.Publisher('/endless/status', Status, queue_size=1, latch=True)
+        self.addCleanup(status.unregister)
+        status.publish(state='relaxing', relax_progress=0.43)
+        terminal, its_other_end = pty.openpty()
+        self.addCleanup(os.close, terminal)
+        process = subprocess.Popen(
+            command(mesh=self.write('surface.obj', *bumpy(1)), output=self.path('sphere.obj'),
+                    node='/endless'), stdout=subprocess.DEVNULL, stderr=its_other_end)
+        os.close(its_other_end)
+        shown = ''
+        while 'relaxing ... 43 %' not in shown:
+            self.assertTrue(select.select([terminal], [], [], LONG)[0], shown)
+            shown += os.read(terminal, 1000).decode()
+        self.assertRegex(shown, r'mapping \.\.\. \d+ %\r\x1b\[K')
+        process.send_signal(signal.SIGINT)
+        process.wait(LONG)
+
+
+class TestNode(MeshTest):
+    def test_scene_is_replaced_and_says_so(self):
+        self.node.add_particles([particle((1, 0, 0)), particle((0, 1, 0))])
+        self.node.set_running(True)
+        vertices, faces = bumpy(1)
+        outcome = self.run_to_success(mesh=self.write('surface.obj', vertices, faces))
+        self.assertIn('removed 2 particles and 0 springs', outcome.output)
+        scene = self.node.get_scene()
+        self.assertEqual(len(vertices), len(scene.particles))
+        self.assertEqual(len(faces), len(scene.solid_angle_springs))
+        self.node.step(steps=0)
+        self.node.step(steps=1)  # only while paused
+
+    def test_launch_file(self):
+        self.directory = self.path("Anna's scans")
+        os.mkdir(self.directory)
+        vertices, faces = bumpy(2)
+        self.write('left hand.obj', vertices, faces)
+        ended = subprocess.run(
+            ['roslaunch', PACKAGE, 'mesh.launch', 'mesh:=left hand.obj', 'uv:=uv of it.obj',
+             'name:=springs_of_mesh'],
+            cwd=self.directory, env={**os.environ, 'PWD': self.directory}, timeout=4 * LONG,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual({'left hand.obj', 'left hand_sphere.obj', 'uv of it.obj'},
+                         set(os.listdir(self.directory)), ended.stdout)
+        sphere, same_faces = mesh.read_obj(self.path('left hand_sphere.obj'))
+        np.testing.assert_array_equal(faces, same_faces)
+        self.assertGreater(mesh.solid_angles(sphere, faces).min(), 0)
