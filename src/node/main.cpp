@@ -58,9 +58,10 @@ int main(int argc, char** argv) {
   // Each thread that calls come in on would keep the memory of the largest for itself.
   mallopt(M_ARENA_MAX, 1);  // NOLINT(concurrency-mt-unsafe): there is no other thread yet
 #endif
-  // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle.
-  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it
+  // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle. The first handle starts
+  // ROS and thereby forgets every earlier request to shut down, so this comes after it.
+  std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   try {
     spherical_springs::run();
   } catch (const std::exception& fault) {
