@@ -10,7 +10,7 @@
 namespace spherical_springs::core {
 namespace {
 
-/// For each particle one of those that springs join it with, the same for all of a group.
+/// The number of each particle's group: those that springs join, directly or by others.
 std::vector<std::uint32_t> groupsOf(const System& system) {
   std::vector<std::uint32_t> parent(system.particleCount());
   std::iota(parent.begin(), parent.end(), 0);
@@ -26,8 +26,13 @@ std::vector<std::uint32_t> groupsOf(const System& system) {
       }
     }
   });
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = root(i);
-  return parent;
+  std::vector<std::uint32_t> number(parent.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < parent.size(); ++i) {
+    if (parent[i] == i) number[i] = count++;
+  }
+  for (std::uint32_t i = 0; i < parent.size(); ++i) number[i] = number[root(i)];
+  return number;
 }
 
 struct Group {
@@ -69,15 +74,14 @@ struct Group {
 
 Points aligned(const System& system, const Points& before, Points after) {
   const auto group_of = groupsOf(system);
-  std::vector<Group> groups(group_of.size());
+  std::vector<Group> groups;
   for (std::size_t i = 0; i < group_of.size(); ++i) {
+    if (group_of[i] >= groups.size()) groups.resize(group_of[i] + 1);
     Group& group = groups[group_of[i]];
     group.covariance += after.col(i) * before.col(i).transpose();
     if (system.pinned(i)) group.addPin(after.col(i));
   }
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (group_of[i] == i) groups[i].findTurn();
-  }
+  for (Group& group : groups) group.findTurn();
   parallelFor(after.cols(), system.threads(), [&](std::ptrdiff_t i) {
     const Vector3 p = groups[group_of[i]].turn * after.col(i);
     if (!system.pinned(i)) after.col(i) = p * (1.5 - 0.5 * p.squaredNorm());

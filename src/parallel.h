@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <numeric>
 #include <vector>
 
 #include "workers.h"
@@ -37,19 +39,34 @@ void parallelFor(std::ptrdiff_t count, int threads, const Body& body) {
   forOnThreads(count, worthwhileThreads(count, threads), body);
 }
 
-/// Sum of `term(i)` for i from 0 to `count` - 1, by blocks of a fixed size.
-template <class Term>
-double parallelSum(std::ptrdiff_t count, int threads, const Term& term) {
+/// `start` combined with `term(i)` for i from 0 to `count` - 1, by blocks of a fixed size, each of
+/// which begins with `start` too.
+template <class Value, class Term, class Combine>
+Value parallelFold(std::ptrdiff_t count, int threads, const Value& start, const Term& term,
+                   const Combine& combine) {
   constexpr std::ptrdiff_t kBlock = 1024;
   const std::ptrdiff_t blocks = (count + kBlock - 1) / kBlock;
-  std::vector<double> sums(blocks, 0);
+  std::vector<Value> values(blocks, start);
   forOnThreads(blocks, worthwhileThreads(count, threads), [&](std::ptrdiff_t block) {
     const std::ptrdiff_t end = std::min(count, (block + 1) * kBlock);
-    for (std::ptrdiff_t i = block * kBlock; i < end; ++i) sums[block] += term(i);
+    Value value = start;
+    for (std::ptrdiff_t i = block * kBlock; i < end; ++i) value = combine(value, term(i));
+    values[block] = value;
   });
-  double total = 0;
-  for (const double sum : sums) total += sum;
-  return total;
+  return std::accumulate(values.begin(), values.end(), start, combine);
+}
+
+/// Sum of `term(i)` for i from 0 to `count` - 1.
+template <class Term>
+double parallelSum(std::ptrdiff_t count, int threads, const Term& term) {
+  return parallelFold(count, threads, 0., term, std::plus<>());
+}
+
+/// The largest `term(i)` for i from 0 to `count` - 1, or 0.
+template <class Term>
+double parallelLargest(std::ptrdiff_t count, int threads, const Term& term) {
+  return parallelFold(count, threads, 0., term,
+                      [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace spherical_springs::core

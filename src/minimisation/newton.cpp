@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "../parallel.h"
+
 namespace spherical_springs::core {
 namespace {
 
@@ -14,14 +16,6 @@ constexpr double kLeastShift = 1e-7;  // rotations of the whole scene need one
 constexpr double kGreatestShift = 1e3;
 constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
-
-double longestMove(const Eigen::VectorXd& step) {
-  double squared = 0;
-  for (Eigen::Index u = 0; u < step.size(); u += 2) {
-    squared = std::max(squared, step.segment<2>(u).squaredNorm());
-  }
-  return std::sqrt(squared);
-}
 
 }  // namespace
 
@@ -57,10 +51,10 @@ void Newton::evaluate() {
   constexpr double kLeastShare = 1e-12;
   if (model_ != Model::exact) {
     energy_.evaluate(Curvature::definite);
-    for (std::size_t i = 0; i < energy_.freeCount(); ++i) {
+    parallelFor(scale_.size(), threads_, [&](std::ptrdiff_t i) {
       const auto& block = energy_.hessian()[energy_.pattern().diagonal[i]];
       scale_[i] = std::max(scale_[i], 0.5 * block.trace());
-    }
+    });
     const double largest = scale_.size() > 0 ? scale_.maxCoeff() : 0;
     scale_ = scale_.cwiseMax(largest > 0 ? kLeastShare * largest : 1);
   }
@@ -84,12 +78,16 @@ double Newton::tolerance() const {
   return std::clamp(std::max(0.9 * std::pow(left, 1.5), enough), kLeast, kMost);
 }
 
+double Newton::longestMove(const Eigen::VectorXd& step) const {
+  return std::sqrt(parallelLargest(scale_.size(), threads_, [&](std::ptrdiff_t i) {
+    return step.segment<2>(2 * i).squaredNorm();
+  }));
+}
+
 double Newton::scaledLength(const Eigen::VectorXd& step) const {
-  double squared = 0;
-  for (Eigen::Index i = 0; i < scale_.size(); ++i) {
-    squared += scale_[i] * step.segment<2>(2 * i).squaredNorm();
-  }
-  return std::sqrt(squared);
+  return std::sqrt(parallelSum(scale_.size(), threads_, [&](std::ptrdiff_t i) {
+    return scale_[i] * step.segment<2>(2 * i).squaredNorm();
+  }));
 }
 
 /// Goes on from where conjugate gradients met negative curvature to the radius, no particle further

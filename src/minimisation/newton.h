@@ -49,6 +49,7 @@ class Newton : public Descent {
   ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
   double tolerance() const;
   bool advances() const;
+  double longestMove(const Eigen::VectorXd& step) const;
   double scaledLength(const Eigen::VectorXd& step) const;
   void goDownward(ModelMinimum& minimum) const;
   void keepInside(Eigen::VectorXd& step);

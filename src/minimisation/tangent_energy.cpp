@@ -310,11 +310,9 @@ std::vector<TangentFrame> TangentEnergy::frames() const {
 }
 
 double TangentEnergy::maxTorque() const {
-  double largest = 0;
-  for (std::size_t n = 0; n < freeCount(); ++n) {
-    largest = std::max(largest, gradient_.segment<2>(2 * n).squaredNorm());
-  }
-  return unit_ * std::sqrt(largest);
+  return unit_ * std::sqrt(parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {
+           return gradient_.segment<2>(2 * n).squaredNorm();
+         }));
 }
 
 Eigen::VectorXd TangentEnergy::reach() const {
@@ -333,7 +331,8 @@ Eigen::VectorXd TangentEnergy::reach() const {
 
 Points TangentEnergy::positions() const {
   Points result(3, particles_.size());
-  for (std::size_t n = 0; n < particles_.size(); ++n) result.col(particles_[n]) = places_[n].point;
+  parallelFor(particles_.size(), threads_,
+              [&](std::ptrdiff_t n) { result.col(particles_[n]) = places_[n].point; });
   return result;
 }
 
