@@ -39,6 +39,7 @@ struct HessianArrays {
   double* gradient;          ///< 2 a free particle
   double* hessian;           ///< 4 a block, by columns
   bool definite;             ///< whether only a definite part of each spring's Hessian is wanted
+  double least_curvature;    ///< across an arc, of its stiffness; what is lower counts as none
 };
 
 /// Add energy, gradient and Hessian of the springs from `begin` to `end`, as `tangentCondition` has

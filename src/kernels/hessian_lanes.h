@@ -133,10 +133,9 @@ inline bool addArcs(const SpringFields<2>& springs, std::uint32_t first,
   // Both ends moving to the same side, and to opposite sides, across the arc.
   Lanes same = -kr * half_sine / half_cosine;
   Lanes opposite = kr * half_cosine / half_sine;
-  if (arrays.definite) {
-    same = same < 0 ? Lanes{} : same;
-    opposite = opposite < 0 ? Lanes{} : opposite;
-  }
+  const Lanes least = arrays.least_curvature * s.stiffness;
+  same = same < least ? Lanes{} : same;
+  opposite = opposite < least ? Lanes{} : opposite;
   const Lanes near = 0.5 * (same + opposite), across = 0.5 * (same - opposite);
   const Lanes2 ma = {ga.y, -ga.x}, mb = {-gb.y, gb.x};
   addBlock(springs, first, 0, 0, outer(s.stiffness * ga, ga) + outer(near * ma, ma), arrays);

@@ -17,6 +17,12 @@ constexpr double kGreatestShift = 1e3;
 constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 
+/// By a drop of the energy after an earlier one.
+Pace paceOf(double drop, double earlier) {
+  if (drop < 5e-3 * earlier) return Pace::near_end;
+  return drop < 0.25 * earlier || drop > earlier ? Pace::good : Pace::poor;
+}
+
 }  // namespace
 
 Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd inertia)
@@ -44,12 +50,14 @@ void Newton::forgetSteps() {
   radius_ = kInfinity;
   hold_.setZero(energy_.freeCount());
   iterations_ = calm_iterations_ = 0;
+  earlier_drop_ = 0;
+  pace_ = Pace::good;
 }
 
 /// Energy, gradient and the Hessian that the model asks for.
 void Newton::evaluate() {
   constexpr double kLeastShare = 1e-12;
-  if (model_ != Model::exact) {
+  if (model_ == Model::definite || model_ == Model::indefinite) {
     energy_.evaluate(Curvature::definite);
     parallelFor(scale_.size(), threads_, [&](std::ptrdiff_t i) {
       const auto& block = energy_.hessian()[energy_.pattern().diagonal[i]];
@@ -59,7 +67,8 @@ void Newton::evaluate() {
     scale_ = scale_.cwiseMax(largest > 0 ? kLeastShare * largest : 1);
   }
   if (model_ == Model::indefinite) definite_ = energy_.hessian();
-  if (model_ != Model::definite) energy_.evaluate(Curvature::exact);
+  if (model_ == Model::tempered) energy_.evaluate(Curvature::tempered);
+  if (model_ == Model::exact || model_ == Model::indefinite) energy_.evaluate(Curvature::exact);
 }
 
 ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) {
@@ -122,21 +131,13 @@ double Newton::allowedShare(const Eigen::VectorXd& step) {
   return share;
 }
 
-/// Whether the last step was a good one. Negative curvature then is likely to be of a few places
-/// only, such as folded triangles of a large mesh, which the definite part of the Hessian mends
-/// while the rest goes on.
-bool Newton::advances() const {
-  constexpr double kMuch = 0.5;
-  return iterations_ > 0 && energy_.maxTorque() < kMuch * earlier_torque_;
-}
-
 bool Newton::iterate() {
   constexpr int kMostAttempts = 40;
   if (creeps()) return false;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     ModelMinimum found = minimum(energy_.gradient(), tolerance());
-    if (found.indefinite && model_ == Model::exact) {
-      model_ = advances() ? Model::definite : Model::indefinite;
+    if (found.indefinite && (model_ == Model::tempered || model_ == Model::exact)) {
+      model_ = model_ == Model::exact && pace_ == Pace::good ? Model::tempered : Model::indefinite;
       calm_iterations_ = 0;
       evaluate();
       continue;
@@ -156,17 +157,13 @@ bool Newton::iterate() {
 Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   const double value = energy_.value();
   const double gradient = energy_.gradient().norm();
-  const double torque = energy_.maxTorque();
   const double expected = energy_.expectedDrop(minimum.step);
   const double length = scaledLength(minimum.step);
   // Where the energy cannot resolve the drop any more, the gradient still can.
   const bool resolved = expected > kRounding * value;
   const Model model = model_;
 
-  // The Hessian of the next step is computed along with the gradient.
-  calm_iterations_ = minimum.indefinite ? 0 : calm_iterations_ + 1;
-  if (minimum.indefinite) model_ = Model::indefinite;
-  if (calm_iterations_ >= 2) model_ = Model::exact;
+  chooseModel(minimum);
   energy_.mark();
   energy_.move(minimum.step);
   evaluate();
@@ -183,7 +180,8 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
       radius_ = length / 2;
     }
     earlier_gradient_ = gradient;
-    earlier_torque_ = torque;
+    pace_ = paceOf(drop, earlier_drop_);
+    earlier_drop_ = drop;
     ++iterations_;
     return Trial::accepted;
   }
@@ -193,6 +191,17 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   shift_ = std::max(4 * shift_, 1e-5);
   radius_ = length / 2;
   return resolved ? Trial::rejected : Trial::exhausted;
+}
+
+/// Of the next step, whose Hessian is computed along with the gradient.
+void Newton::chooseModel(const ModelMinimum& minimum) {
+  calm_iterations_ = minimum.indefinite ? 0 : calm_iterations_ + 1;
+  if (minimum.indefinite) model_ = Model::indefinite;
+  if (calm_iterations_ < 2) return;
+  // What follows the last step asks for the exact one.
+  const bool last = minimum.residual * energy_.maxTorque() <= wanted_torque_;
+  const bool tempered = model_ == Model::tempered && pace_ == Pace::good && !last;
+  model_ = model_ == Model::definite || tempered ? Model::tempered : Model::exact;
 }
 
 /// Another step from where one has led out of a narrow bent valley, as stiff springs make them
@@ -223,7 +232,7 @@ bool Newton::leaveSaddle() {
   constexpr double kProbeTolerance = 3e-2;
   if (energy_.freeCount() == 0) return false;
   shift_ = kNegligible;
-  if (model_ == Model::definite) {
+  if (model_ == Model::definite || model_ == Model::tempered) {
     model_ = Model::exact;
     evaluate();
   }

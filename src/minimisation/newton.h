@@ -7,6 +7,10 @@
 
 namespace spherical_springs::core {
 
+/// Whether drops of the energy become far smaller, as where the model is as good as exact; much
+/// smaller, or larger again, as where triangles unfold; or neither.
+enum class Pace { near_end, good, poor };
+
 /// Newton's method, with the shift of Levenberg and Marquardt where the energy is not as its
 /// quadratic model has it, and steps along directions of negative curvature within a radius.
 class Newton : public Descent {
@@ -38,17 +42,18 @@ class Newton : public Descent {
   bool leaveSaddle();
 
  private:
-  /// The Hessian of the model: a definite part of the exact one, at first; the exact one; or the
+  /// The Hessian of the model: a definite part of the exact one, at first; the tempered one, which
+  /// gets past a few folded triangles of a large mesh while the rest goes on; the exact one; or the
   /// exact one with the definite part beside it for the preconditioner, where it has negative
   /// curvature.
-  enum class Model { definite, exact, indefinite };
+  enum class Model { definite, tempered, exact, indefinite };
   enum class Trial { accepted, rejected, exhausted };
 
   void forgetSteps();
   void evaluate();
   ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
   double tolerance() const;
-  bool advances() const;
+  void chooseModel(const ModelMinimum& minimum);
   double longestMove(const Eigen::VectorXd& step) const;
   double scaledLength(const Eigen::VectorXd& step) const;
   void goDownward(ModelMinimum& minimum) const;
@@ -72,7 +77,8 @@ class Newton : public Descent {
   int iterations_ = 0;
   int calm_iterations_ = 0;  // since negative curvature
   double earlier_gradient_ = 0;
-  double earlier_torque_ = 0;
+  double earlier_drop_ = 0;
+  Pace pace_ = Pace::good;
   double earlier_value_ = 0;
 };
 

@@ -234,7 +234,8 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
     static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
     const HessianArrays arrays = {places_.front().frame.data(),
                                   static_cast<std::uint32_t>(freeCount()), gradient_.data(),
-                                  hessian_.front().data(), curvature == Curvature::definite};
+                                  hessian_.front().data(), curvature == Curvature::definite,
+                                  leastCurvature(curvature)};
     std::vector<std::uint32_t> left_out(end - begin);
     std::uint32_t count = 0;
     value = kernelFor(first)(fields, begin, end, arrays, left_out.data(), count);

@@ -30,10 +30,9 @@ TangentCondition<2> tangentCondition(const AngleSpring& spring,
 
   double same_side = -std::tan(angle / 2);
   double opposite_sides = 1 / std::tan(angle / 2);
-  if (curvature == Curvature::definite) {
-    if (result.value > 0) same_side = 0;
-    if (result.value < 0) opposite_sides = 0;
-  }
+  const double least = leastCurvature(curvature);
+  if (result.value * same_side < least) same_side = 0;
+  if (result.value * opposite_sides < least) opposite_sides = 0;
   const std::array<Eigen::Vector2d, 2> across = {
       Eigen::Vector2d(result.gradient[0].y(), -result.gradient[0].x()),
       Eigen::Vector2d(-result.gradient[1].y(), result.gradient[1].x())};

@@ -113,7 +113,8 @@ struct Bench {
                                     {&springs[0].stiffness, sizeof(Spring)},
                                     {places.data(), sizeof(places[0])}};
     const HessianArrays arrays = {at[0].frame.data(), free_count, gradient[0].data(),
-                                  hessian[0].data(), curvature == Curvature::definite};
+                                  hessian[0].data(), curvature == Curvature::definite,
+                                  leastCurvature(curvature)};
     const auto count = static_cast<std::uint32_t>(springs.size());
     left_out.resize(count);
     std::uint32_t left_out_count = 0;
@@ -163,7 +164,8 @@ struct Bench {
   }
 };
 
-constexpr Curvature kCurvatures[] = {Curvature::exact, Curvature::definite};
+constexpr Curvature kCurvatures[] = {Curvature::exact, Curvature::tempered,
+                                     Curvature::definite};
 
 template <class Spring>
 class HessianKernelsOf : public ::testing::Test {

@@ -189,6 +189,23 @@ TYPED_TEST(Springs, DefiniteCurvatureIsDefinite) {
   }
 }
 
+// At an angle of 0.1 the curvature across is 2 (rest - angle) / angle of the stiffness, nearly.
+TEST(AngleSpring, TemperedCurvatureIsExactBelowThreeTenthsOfTheStiffness) {
+  const std::array<Vector3, 2> points = {Vector3(1, 0, 0),
+                                         Vector3(std::cos(0.1), std::sin(0.1), 0)};
+  const auto hessian = [&](double rest_angle, Curvature curvature) {
+    const auto t = tangentCondition(testing::angleSpring(0, 1, rest_angle), points,
+                                    framesOf(points), curvature);
+    return t.hessian[0][0];
+  };
+  for (const double rest_angle : {0., 0.05, 0.1, 0.113}) {
+    EXPECT_EQ(hessian(rest_angle, Curvature::tempered), hessian(rest_angle, Curvature::exact));
+  }
+  for (const double rest_angle : {0.117, 0.2, 3.}) {
+    EXPECT_EQ(hessian(rest_angle, Curvature::tempered), hessian(rest_angle, Curvature::definite));
+  }
+}
+
 TYPED_TEST(Springs, AtRestTakesThePresentValue) {
   Random random(7);
   for (int trial = 0; trial < 100; ++trial) {

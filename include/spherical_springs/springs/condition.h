@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "spherical_springs/sphere.h"
 
@@ -29,9 +30,17 @@ inline TangentFrame tangentFrame(const Vector3& p) {
   return frame;
 }
 
-/// Whether the second derivatives H of a condition are exact, or altered so that C H, and with it
-/// the spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive semidefinite.
-enum class Curvature { exact, definite };
+/// Whether the second derivatives H of a condition C are exact; or tempered, exact but for arcs whose
+/// negative curvature would outweigh what others may give; or altered so that C H, and with it the
+/// spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive semidefinite.
+enum class Curvature { exact, tempered, definite };
+
+/// Of C H across an arc: what is lower counts as none.
+constexpr double leastCurvature(Curvature curvature) {
+  constexpr double kTempered = -0.3;
+  if (curvature == Curvature::definite) return 0;
+  return curvature == Curvature::tempered ? kTempered : -std::numeric_limits<double>::infinity();
+}
 
 /// Derivatives of the condition in tangent coordinates: particle i moves along frame_i * d_i and
 /// back onto the sphere.
