@@ -2,6 +2,8 @@
 // is compiled for. The formulas are those of src/springs, for angles that are not large.
 #pragma once
 
+#include <algorithm>
+
 #include "hessian_kernels.h"
 #include "lanes.h"
 
@@ -214,6 +216,17 @@ inline bool addTriangles(const SpringFields<3>& springs, std::uint32_t first,
   return true;
 }
 
+/// Asks the memory for what springs from `begin` to `end` add to.
+template <std::size_t N>
+inline void fetchAhead(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t end,
+                       const HessianArrays& arrays) {
+  for (std::uint32_t s = begin; s < end; ++s) {
+    for (const std::uint32_t place : springs.places[s]) {
+      __builtin_prefetch(arrays.hessian + 4 * std::size_t{place}, 1);
+    }
+  }
+}
+
 template <std::size_t N,
           bool (*AddLanes)(const SpringFields<N>&, std::uint32_t, const HessianArrays&, Lanes&)>
 double addAll(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t end,
@@ -221,6 +234,7 @@ double addAll(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t
   Lanes energy = {};
   left_out_count = 0;
   for (; begin + kLanes <= end; begin += kLanes) {
+    fetchAhead(springs, begin + kLanes, std::min(end, begin + 2 * kLanes), arrays);
     if (!AddLanes(springs, begin, arrays, energy)) {
       leaveOut(begin, begin + kLanes, left_out, left_out_count);
     }
