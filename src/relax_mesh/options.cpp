@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <algorithm>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
 #include <boost/program_options.hpp>
 #include <iostream>
 #include <stdexcept>
@@ -13,6 +14,18 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
+
+/// Not by Boost, which shows a text that is none as it is, however long.
+double parseAngleWeight(const std::string& text) {
+  constexpr core::Range kAllowed{0, 1e6, "0 to 1e6"};
+  double weight;
+  if (!boost::conversion::try_lexical_convert(text, weight)) {
+    throw std::invalid_argument("--angle-weight is " + core::quoted(text) +
+                                "; allowed: " + kAllowed.allowed);
+  }
+  core::requireInside(kAllowed, weight, "--angle-weight");
+  return weight;
+}
 
 po::options_description described(Options& options) {
   const auto path = [](fs::path& target) {
@@ -31,12 +44,14 @@ po::options_description described(Options& options) {
   add("sphere", path(options.sphere), "start from the vertices of this OBJ file");
   add("uv", path(options.uv),
       "OBJ file to write: the surface with longitude and latitude as texture coordinates");
-  add("angle-weight", po::value(&options.angle_weight)->default_value(0, "0"),
+  add("angle-weight",
+      po::value<std::string>()->default_value("0")->notifier(
+          [&](const std::string& text) { options.angle_weight = parseAngleWeight(text); }),
       "0: every face gets its share of the area, whatever becomes of its angles; the more (up to "
       "1e6), the better corner angles are kept, and the worse areas");
   add("density", path(options.density),
-      "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice the "
-      "area on the sphere that it would get with 1");
+      "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice "
+      "the area on the sphere that it would get with 1");
   add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");
   add("node", po::value(&options.node)->default_value("spherical_springs"),
       "name of the node that relaxes");
@@ -76,6 +91,10 @@ void requireWritable(const Options& options) {
   if (!options.metrics.empty()) requireOrFail("--metrics", options.metrics);
 }
 
+[[noreturn]] void refuse(const po::error& fault) {
+  throw std::invalid_argument(std::string(fault.what()) + "; see relax_mesh --help");
+}
+
 }  // namespace
 
 std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
@@ -89,10 +108,12 @@ std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
       return std::nullopt;
     }
     po::notify(values);
+  } catch (po::error_with_no_option_name& fault) {  // but with the argument as it was given
+    fault.set_original_token(core::shortened(fault.get_option_name()));
+    refuse(fault);
   } catch (const po::error& fault) {
-    throw std::invalid_argument(std::string(fault.what()) + "; see relax_mesh --help");
+    refuse(fault);
   }
-  core::requireInside({0, 1e6, "0 to 1e6"}, options.angle_weight, "--angle-weight");
   requireWritable(options);
   return options;
 }

@@ -61,7 +61,7 @@ TEST(NestedDissection, OrdersEveryNodeOnceAndBoundsFill) {
 }
 
 TEST(NestedDissection, TakesAnyNumberOfPieces) {
-  constexpr std::uint32_t kAlone = 200'000, kChain = 1000;
+  constexpr std::uint32_t kAlone = 200'010, kChain = 1000;  // not whole parts
   Graph graph;
   graph.first = {0};
   for (std::uint32_t i = 0; i < kAlone + kChain; ++i) {
@@ -78,6 +78,31 @@ TEST(NestedDissection, TakesAnyNumberOfPieces) {
   for (const auto& part : dissection.parts) {
     EXPECT_LE(part.end - part.first, 48);
     EXPECT_LE(part.boundary.size(), 2);
+  }
+}
+
+/// Legs that meet in node 0: cut across, they leave pieces, each of which is large.
+Graph spider(std::uint32_t legs, std::uint32_t length) {
+  Graph graph;
+  graph.first = {0};
+  for (std::uint32_t i = 0; i <= legs * length; ++i) {
+    if (i > 0) graph.neighbours.push_back(i > legs ? i - legs : 0);
+    graph.neighbours.push_back(i);
+    const std::uint32_t next = i > 0 ? i + legs : 1, last = std::min(i + legs, legs * length);
+    for (std::uint32_t j = next; j <= last; ++j) graph.neighbours.push_back(j);
+    graph.first.push_back(static_cast<std::uint32_t>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+TEST(NestedDissection, HandsOnTheBoundariesOfPieces) {
+  const NestedDissection dissection = nestedDissection(spider(5, 100));
+  std::vector<int> parents(dissection.parts.size(), 0);
+  for (const auto& part : dissection.parts) {
+    for (const std::uint32_t child : part.children) ++parents[child];
+  }
+  for (std::size_t p = 0; p < parents.size(); ++p) {
+    EXPECT_EQ(parents[p], dissection.parts[p].boundary.empty() ? 0 : 1);
   }
 }
 

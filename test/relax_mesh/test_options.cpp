@@ -48,7 +48,9 @@ TEST(Options, AreRefusedWithAReason) {
   EXPECT_THROW(parseOptions({"--output", "a.obj"}), std::invalid_argument);
   EXPECT_NE("taken", reasonAgainst({"--mesch", "x"}));
   EXPECT_NE("taken", reasonAgainst({"c.obj"}));
-  EXPECT_NE("taken", reasonAgainst({"--angle-weight", "much"}));
+  EXPECT_EQ("--angle-weight is 'much'; allowed: 0 to 1e6",
+            reasonAgainst({"--angle-weight", "much"}));
+  EXPECT_EQ("--angle-weight is '1 '; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "1 "}));
   EXPECT_EQ("--angle-weight is -1; allowed: 0 to 1e6", reasonAgainst({"--angle-weight=-1"}));
   EXPECT_EQ("--angle-weight is nan; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "nan"}));
   EXPECT_EQ("--uv is '/nowhere/u.obj'; allowed: a file in a directory that exists",
@@ -57,6 +59,24 @@ TEST(Options, AreRefusedWithAReason) {
             reasonAgainst({"--uv", "/dev/null"}));
   EXPECT_EQ("--uv is '.'; allowed: the name of a file", reasonAgainst({"--uv", "."}));
   EXPECT_EQ("--uv is 'u/'; allowed: the name of a file", reasonAgainst({"--uv", "u/"}));
+}
+
+TEST(Options, AreShownShortAndOnOneLine) {
+  const std::string help = "; see relax_mesh --help", allowed = "; allowed: 0 to 1e6";
+  const std::string x(1000, 'x');
+  EXPECT_EQ("unrecognised option '--" + x.substr(0, 98) + "...'" + help, reasonAgainst({"--" + x}));
+  EXPECT_EQ("unrecognised option '--a?b=?[31m'" + help, reasonAgainst({"--a\nb=\033[31m"}));
+  EXPECT_EQ("option '--m=a?b' is ambiguous and matches '--mesh', and '--metrics'" + help,
+            reasonAgainst({"--m=a\nb"}));
+  EXPECT_EQ("--angle-weight is '" + x.substr(0, 100) + "...' (1000 bytes)" + allowed,
+            reasonAgainst({"--angle-weight", x}));
+  EXPECT_EQ("--angle-weight is '1?2'" + allowed, reasonAgainst({"--angle-weight=1\n2"}));
+  for (const std::string& argument : {x, std::string("\n"), "--node=" + x, "--help=" + x}) {
+    const std::string reason = reasonAgainst({"--node", "n", argument});
+    EXPECT_NE("taken", reason);
+    EXPECT_LT(reason.size(), 200);
+    EXPECT_EQ(std::string::npos, reason.find('\n'));
+  }
 }
 
 TEST(Options, SayWhyAPathIsNone) {

@@ -176,9 +176,12 @@ class TestRefusals(MeshTest):
             with open(self.path(name), 'w') as file:
                 file.write('1\n' * (len(faces) - 1) + last + '\n')
         huge = self.write('huge.obj', 9 * vertices, faces)
+        os.mkfifo(self.path('pipe'))
         for options, pattern in (
                 ({'mesh': self.path('no.obj')}, 'no.obj: No such file'),
                 ({'mesh': self.directory}, 'not a file'),
+                ({'mesh': self.path('pipe')}, '/pipe: not a file'),
+                ({'density': self.path('pipe')}, '/pipe: not a file'),
                 ({'density': self.path('density')}, '/density: density 79 is -2; allowed: a positive'),
                 ({'density': self.path('steep')},
                  r'/steep: face 79 is to have 99\.\d* % of the sphere; allowed: up to 45 %'),
@@ -193,9 +196,22 @@ class TestRefusals(MeshTest):
                 ({'angle_weight': 'nan'}, 'angle-weight is nan; allowed: 0 to'),
                 ({'output': '/nowhere/x.obj'}, "--output is '/nowhere/x.obj'; allowed: "),
                 ({'colour': 'red'}, "'--colour'"),
+                ({'colour\n' + 200 * 'x': 'red'}, r"option '--colour\?x{91}\.\.\.'; see"),
+                ({'angle_weight': 'a\nlot'}, r"--angle-weight is 'a\?lot'; allowed: 0 to"),
                 ({'node': 'nobody'}, 'no node /nobody answers')):
             with self.subTest(options=options):
                 self.assertRegex(self.refusal(**{'mesh': surface, **options}), pattern)
+
+    def test_no_map_without_folds(self):
+        vertices, faces = bumpy(0)
+        np.savetxt(self.path('density'), np.where(np.arange(len(faces)) % 2, 1, 1e-9))
+        self.node.add_particles([particle((1, 0, 0))])
+        self.assertRegex(
+            self.refusal(mesh=self.write('surface.obj', vertices, faces),
+                         density=self.path('density')),
+            r'/surface\.obj: no map without folds was found, and no file has been written; '
+            r'to help it, begin from one \(--sphere\), or give a mesh with fewer thin triangles')
+        self.assertEqual(1, len(self.node.get_scene().particles))
 
     def test_no_master(self):
         surface = self.write('surface.obj', *bumpy(1))

@@ -15,7 +15,7 @@ from spherical_springs.srv import (
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mesh_test import MeshTest
-from node_client import LONG, PACKAGE
+from node_client import LONG, PACKAGE, wait_until
 from relax_mesh import command, relax_mesh
 from scenes import particle
 from shapes import bumpy, mesh
@@ -23,9 +23,10 @@ from shapes import bumpy, mesh
 
 class EndlessNode:
     """Stands for a node whose relaxation ends only when it is cancelled, and whose scene is then
-    empty."""
+    empty. With `failing`, its relaxation ends without an answer."""
 
     def __init__(self, name):
+        self.failing = False
         self.relaxing, self.cancelled = threading.Event(), threading.Event()
         self.services = [rospy.Service(name + '/' + service, kind, answer)
                          for service, kind, answer in (
@@ -40,7 +41,8 @@ class EndlessNode:
 
     def relax(self, _):
         self.relaxing.set()
-        return RelaxResponse(success=self.cancelled.wait(2 * LONG))
+        cancelled = self.cancelled.wait(2 * LONG)
+        return None if self.failing else RelaxResponse(success=cancelled)
 
     def cancel(self, _):
         self.cancelled.set()
@@ -56,7 +58,8 @@ class TestInterruption(MeshTest):
         node = EndlessNode('/endless')
         self.addCleanup(node.shutdown)
         surface = self.write('surface.obj', *bumpy(1))
-        for which in (signal.SIGINT, signal.SIGTERM):
+        for which, node.failing in ((signal.SIGINT, False), (signal.SIGTERM, False),
+                                    (signal.SIGINT, True)):  # which Ctrl-C may end as well
             node.relaxing.clear()
             node.cancelled.clear()
             process = subprocess.Popen(
@@ -67,6 +70,8 @@ class TestInterruption(MeshTest):
             process.send_signal(which)
             error = process.communicate(timeout=LONG)[1]
             self.assertTrue(node.cancelled.is_set())
+            if node.failing:  # of which roscpp writes a line, too
+                error = error.splitlines(True)[-1]
             self.assertEqual((1, 'error: interrupted; no file has been written\n'),
                              (process.returncode, error))
             self.assertEqual(['surface.obj'], os.listdir(self.directory))
@@ -90,19 +95,29 @@ class TestProgress(MeshTest):
         self.addCleanup(node.shutdown)
         status = rospy.Publisher('/endless/status', Status, queue_size=1, latch=True)
         self.addCleanup(status.unregister)
-        status.publish(state='relaxing', relax_progress=0.43)
+        status.publish(state='paused', relax_progress=0.99)  # of an earlier one
         terminal, its_other_end = pty.openpty()
         self.addCleanup(os.close, terminal)
         process = subprocess.Popen(
             command(mesh=self.write('surface.obj', *bumpy(1)), output=self.path('sphere.obj'),
                     node='/endless'), stdout=subprocess.DEVNULL, stderr=its_other_end)
         os.close(its_other_end)
+        wait_until(status.get_num_connections)
+        status.publish(state='relaxing', relax_progress=0.43)
         shown = ''
-        while 'relaxing ... 43 %' not in shown:
-            self.assertTrue(select.select([terminal], [], [], LONG)[0], shown)
-            shown += os.read(terminal, 1000).decode()
+
+        def read_until(text):
+            nonlocal shown
+            while text not in shown:
+                self.assertTrue(select.select([terminal], [], [], LONG)[0], shown)
+                shown += os.read(terminal, 1000).decode()
+
+        read_until('relaxing ... 43 %')
+        self.assertNotIn('relaxing ... 99 %', shown)
         self.assertRegex(shown, r'mapping \.\.\. \d+ %\r\x1b\[K')
         process.send_signal(signal.SIGINT)
+        read_until('written')
+        self.assertIn('43 %\r\x1b[Kerror: interrupted', shown)
         process.wait(LONG)
 
 
