@@ -100,6 +100,33 @@ TEST(Relaxer, WarmEndsWhereItEndsCold) {
   }
 }
 
+/// Arcs along a great circle, each `growth` times its share of it at rest.
+Scene ringScene(std::uint32_t count, double growth) {
+  std::vector<Particle> particles;
+  SpringLists springs;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double longitude = 2 * kPi * i / count;
+    particles.push_back(testing::particleAt(Vector3(std::cos(longitude), std::sin(longitude), 0)));
+    springs.get<AngleSpring>().push_back(
+        testing::angleSpring(i, (i + 1) % count, growth * 2 * kPi / count));
+  }
+  return testing::sceneOf(particles, springs);
+}
+
+// Where it stays on the great circle no torque says that it could buckle.
+TEST(Relaxer, LeavesASaddleThatWasAMinimumBefore) {
+  for (const std::uint32_t count : {7u, 100u, 3000u}) {
+    const Scene scene = ringScene(count, 1);
+    Relaxer relaxer;
+    const auto before = relaxer.relax(System(scene, {}), positionsOf(scene), {});
+    EXPECT_TRUE(before.converged) << before.message;
+    const System grown(ringScene(count, 1.01), {});
+    const auto after = relaxer.relax(grown, before.positions, {});
+    EXPECT_TRUE(after.converged) << after.message;
+    EXPECT_LT(after.energy_after, 1e-6 * after.energy_before) << count;
+  }
+}
+
 TEST(Relaxer, GoesOnFromWhereAnotherMethodEnded) {
   const Scene scene = testing::membraneScene(2);
   const System system(scene, {});

@@ -30,9 +30,10 @@ inline TangentFrame tangentFrame(const Vector3& p) {
   return frame;
 }
 
-/// Whether the second derivatives H of a condition C are exact; or tempered, exact but for arcs whose
-/// negative curvature would outweigh what others may give; or altered so that C H, and with it the
-/// spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive semidefinite.
+/// Whether the second derivatives H of a condition C are exact; or tempered, exact but for arcs
+/// whose negative curvature would outweigh what others may give; or altered so that C H, and with
+/// it the spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive
+/// semidefinite.
 enum class Curvature { exact, tempered, definite };
 
 /// Of C H across an arc: what is lower counts as none.
