@@ -32,7 +32,6 @@ Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd in
 
 void Newton::place(const Points& positions) {
   energy_.place(positions);
-  probed_.resize(0);
   model_ = Model::definite;
   forgetSteps();
   scale_.setZero(energy_.freeCount());
@@ -228,40 +227,23 @@ bool Newton::creeps() {
   return creeping;
 }
 
-/// The minimum of the model under a random force in place of the torque: conjugate gradients on the
-/// way to it meet whatever negative curvature there is. They go on from where the last probe has
-/// ended; what has become soft since then stands out in what is left of the force.
-ModelMinimum Newton::probe() {
-  constexpr double kTolerance = 3e-2;
-  std::mt19937 generator(1);
-  Eigen::VectorXd force(energy_.gradient().size());
-  for (double& component : force) component = generator() / (0.5 * std::mt19937::max()) - 1;
-  const double wanted = kTolerance * force.norm();
-  if (probed_.size() > 0) force += energy_.product(probed_);
-  ModelMinimum found = minimum(force, wanted / force.norm());
-  if (found.indefinite) {
-    probed_.resize(0);
-  } else if (probed_.size() > 0) {
-    probed_ += found.step;
-  } else {
-    probed_ = found.step;
-  }
-  return found;
-}
-
 bool Newton::leaveSaddle() {
   constexpr double kNegligible = 1e-6;  // curvature, of the stiffness
+  constexpr double kProbeTolerance = 3e-2;
   if (energy_.freeCount() == 0) return false;
   shift_ = kNegligible;
   if (model_ == Model::definite || model_ == Model::tempered) {
     model_ = Model::exact;
     evaluate();
   }
-  ModelMinimum found = probe();
+  std::mt19937 generator(1);
+  Eigen::VectorXd probe(energy_.gradient().size());
+  for (double& component : probe) component = generator() / (0.5 * std::mt19937::max()) - 1;
+  ModelMinimum found = minimum(probe, kProbeTolerance);
   if (found.indefinite && model_ == Model::exact) {
     model_ = Model::indefinite;
     evaluate();
-    found = probe();
+    found = minimum(probe, kProbeTolerance);
   }
   if (!found.indefinite || found.downward.size() == 0) return false;
 

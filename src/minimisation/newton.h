@@ -61,7 +61,6 @@ class Newton : public Descent {
   double allowedShare(const Eigen::VectorXd& step);
   Trial tryStep(const ModelMinimum& minimum);
   void correct();
-  ModelMinimum probe();
   bool creeps();
 
   int threads_;
@@ -81,8 +80,6 @@ class Newton : public Descent {
   double earlier_drop_ = 0;
   Pace pace_ = Pace::good;
   double earlier_value_ = 0;
-  Eigen::VectorXd
-      probed_;  // where the last probe has ended, in the same frames; empty: there is none
 };
 
 }  // namespace spherical_springs::core

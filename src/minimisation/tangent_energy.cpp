@@ -195,16 +195,6 @@ void TangentEnergy::mark() { marked_places_ = places_; }
 
 void TangentEnergy::goBack() { places_ = marked_places_; }
 
-Eigen::VectorXd TangentEnergy::product(const Eigen::VectorXd& step) const {
-  const Graph& graph = pattern_.graph;
-  Eigen::VectorXd result(step.size());
-  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t i) {
-    result.segment<2>(2 * i) =
-        rowProduct<double, 2>(graph, hessian_, step, graph.first[i], graph.first[i + 1]);
-  });
-  return result;
-}
-
 double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
   const Graph& graph = pattern_.graph;
   return -parallelSum(freeCount(), threads_, [&](std::ptrdiff_t i) {
@@ -243,10 +233,8 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
         {compiled.places.data(), sizeof(compiled.places[0])}};
     static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
     const HessianArrays arrays = {places_.front().frame.data(),
-                                  static_cast<std::uint32_t>(freeCount()),
-                                  gradient_.data(),
-                                  hessian_.front().data(),
-                                  curvature == Curvature::definite,
+                                  static_cast<std::uint32_t>(freeCount()), gradient_.data(),
+                                  hessian_.front().data(), curvature == Curvature::definite,
                                   leastCurvature(curvature)};
     std::vector<std::uint32_t> left_out(end - begin);
     std::uint32_t count = 0;

@@ -63,9 +63,6 @@ class TangentEnergy {
   /// What the quadratic model of the last evaluation promises of a step.
   double expectedDrop(const Eigen::VectorXd& step) const;
 
-  /// The Hessian of the last evaluation times `step`.
-  Eigen::VectorXd product(const Eigen::VectorXd& step) const;
-
   /// Largest gradient of a free particle, which is its torque [N m].
   double maxTorque() const;
 
