@@ -79,6 +79,10 @@ void TangentEnergy::compile(const System& system) {
     compiled.first[b] = by_lowest.first[pattern_.order.first_node[b]];
   }
   compiled.sources = std::move(by_lowest.items);
+  const auto placeOf = [&](std::uint32_t row, std::uint32_t column) {
+    if (row >= freeCount() || column >= freeCount()) return HessianArrays::kNotStored;
+    return row == column ? pattern_.diagonal[row] : pattern_.place(row, column);
+  };
   compiled.springs.resize(springs.size());
   compiled.places.resize(springs.size());
   parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
@@ -87,10 +91,7 @@ void TangentEnergy::compile(const System& system) {
     for (std::uint32_t& i : spring.particles) i = numbers_[i];
     for (std::size_t i = 0; i < kEnds; ++i) {
       for (std::size_t j = 0; j < kEnds; ++j) {
-        const std::uint32_t row = spring.particles[i], column = spring.particles[j];
-        const bool stored = row < freeCount() && column < freeCount();
-        compiled.places[s][kEnds * i + j] =
-            stored ? pattern_.place(row, column) : HessianArrays::kNotStored;
+        compiled.places[s][kEnds * i + j] = placeOf(spring.particles[i], spring.particles[j]);
       }
     }
   });
@@ -233,8 +234,10 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
         {compiled.places.data(), sizeof(compiled.places[0])}};
     static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
     const HessianArrays arrays = {places_.front().frame.data(),
-                                  static_cast<std::uint32_t>(freeCount()), gradient_.data(),
-                                  hessian_.front().data(), curvature == Curvature::definite,
+                                  static_cast<std::uint32_t>(freeCount()),
+                                  gradient_.data(),
+                                  hessian_.front().data(),
+                                  curvature == Curvature::definite,
                                   leastCurvature(curvature)};
     std::vector<std::uint32_t> left_out(end - begin);
     std::uint32_t count = 0;
