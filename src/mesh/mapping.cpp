@@ -84,8 +84,20 @@ double Mapping::wantedSpread() const {
   return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
 
+/// A map of the coarsest mesh; while there is no other, with shares that differ less and less.
+std::optional<Points> Mapping::coarsest(MeshLevel level) {
+  constexpr int kMostRoots = 5;  // from a range of 1e6 to 1.5
+  for (int root = 0; root <= kMostRoots; ++root) {
+    if (auto points = withoutAFace(level)) return points;
+    if (has_map_) break;
+    level.shares = level.shares.cwiseSqrt();
+    level.shares *= 4 * core::kPi / level.shares.sum();
+  }
+  return {};
+}
+
 /// Without the largest face, or, where that does not become one again, the next largest.
-std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
+std::optional<Points> Mapping::withoutAFace(const MeshLevel& level) {
   constexpr std::size_t kMostCuts = 8;
   std::vector<Eigen::Index> faces(level.shares.size());
   std::iota(faces.begin(), faces.end(), 0);
@@ -94,7 +106,7 @@ std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
   });
   faces.resize(std::min(faces.size(), kMostCuts));
   for (const Eigen::Index cut : faces) {
-    if (auto points = coarsest(level, cut)) return points;
+    if (auto points = withoutFace(level, cut)) return points;
     if (has_map_ && ended_) break;
   }
   return {};
@@ -102,7 +114,7 @@ std::optional<Points> Mapping::coarsest(const MeshLevel& level) {
 
 /// Whatever the time, while there is no other map: only when the face that has been cut has shrunk,
 /// it is one again.
-std::optional<Points> Mapping::coarsest(const MeshLevel& level, Eigen::Index cut) {
+std::optional<Points> Mapping::withoutFace(const MeshLevel& level, Eigen::Index cut) {
   constexpr int kMostIterations = 600;
   constexpr double kLeastShape = 1e-4;
   const FoldFreeStart start =

@@ -177,6 +177,24 @@ TEST(SphereMap, OfAnOctahedronWhoseLargestFaceStaysLarge) {
   EXPECT_LT(spread(mesh, sharesOf(mesh), points), 1e-3);
 }
 
+// The cut face becomes one again only with shares that differ less; from there the true ones
+// follow.
+TEST(SphereMap, OfFewFacesWithSharesOverNineDecades) {
+  testing::Random random(3);
+  for (int trial = 0; trial < 12; ++trial) {
+    const TriangleMesh mesh =
+        trial % 3 == 0 ? testing::tetrahedron() : testing::bumps(trial % 3 - 1, 1);
+    Eigen::VectorXd areas(mesh.faces.cols());
+    for (double& area : areas) area = std::pow(10, random.between(-9, 0));
+    const Eigen::VectorXd shares = faceShares(areas);
+    if (shares.maxCoeff() > 0.4 * 4 * core::kPi) continue;
+    Points points;
+    EXPECT_NO_THROW(points = sphereMap(mesh, shares, patient(100))) << trial;
+    if (points.size() == 0) continue;
+    EXPECT_TRUE(coversOnce(mesh.faces, points)) << trial;
+  }
+}
+
 TEST(SphereMap, GoesOnFromAStart) {
   const TriangleMesh mesh = testing::bumps(3, 2);
   const Eigen::VectorXd shares = sharesOf(mesh);
