@@ -84,18 +84,6 @@ double Mapping::wantedSpread() const {
   return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
 
-/// A map of the coarsest mesh; while there is no other, with shares that differ less and less.
-std::optional<Points> Mapping::coarsest(MeshLevel level) {
-  constexpr int kMostRoots = 5;  // from a range of 1e6 to 1.5
-  for (int root = 0; root <= kMostRoots; ++root) {
-    if (auto points = withoutAFace(level)) return points;
-    if (has_map_) break;
-    level.shares = level.shares.cwiseSqrt();
-    level.shares *= 4 * core::kPi / level.shares.sum();
-  }
-  return {};
-}
-
 /// Without the largest face, or, where that does not become one again, the next largest.
 std::optional<Points> Mapping::withoutAFace(const MeshLevel& level) {
   constexpr std::size_t kMostCuts = 8;
@@ -134,11 +122,10 @@ std::optional<Points> Mapping::withoutFace(const MeshLevel& level, Eigen::Index 
   return {};
 }
 
-/// Everything but the last phase, which is the longest, from a coarsest mesh of a size.
-std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
+/// From a map of the coarsest mesh to one of the mesh itself, if none of its faces folds.
+std::optional<Points> Mapping::evenedOut(const Decimation& meshes) {
   constexpr int kSweepsBefore = 10;  // the first step of all vertices together
-  const Decimation meshes = decimation(faces_, shares_, vertices_, size);
-  std::optional<Points> start = coarsest(meshes.levels.front());
+  std::optional<Points> start = withoutAFace(meshes.levels.front());
   if (!start) return {};
   Points points = std::move(*start);
   for (const MeshLevel& level : meshes.levels) {
@@ -153,9 +140,26 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
     descent.runWithSweeps(FaceHessian::definite, kSlow, [&] { return goOn(); });
     points = energy.points();
   }
+  if (!coversOnce(meshes.levels.back().faces, points)) return {};
   Points result(3, vertices_);
   for (std::int32_t v = 0; v < vertices_; ++v) result.col(meshes.vertices[v]) = points.col(v);
-  return roundedOff(result);
+  return result;
+}
+
+/// Everything but the last phase, which is the longest, from a coarsest mesh of a size. While there
+/// is no map, on the way there with shares that differ less and less.
+std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
+  constexpr int kMostRoots = 5;  // from a range of 1e6 to 1.5
+  Decimation meshes = decimation(faces_, shares_, vertices_, size);
+  for (int root = 0; root <= kMostRoots; ++root) {
+    if (const auto points = evenedOut(meshes)) return roundedOff(*points);
+    if (has_map_) break;
+    for (MeshLevel& level : meshes.levels) {
+      level.shares = level.shares.cwiseSqrt();
+      level.shares *= 4 * core::kPi / level.shares.sum();
+    }
+  }
+  return {};
 }
 
 /// Lowers the weight of the faces' shape, as long as that is quick.
