@@ -38,7 +38,7 @@ struct HessianArrays {
   std::uint32_t free_count;  ///< particles below it have a gradient
   double* gradient;          ///< 2 a free particle
   double* hessian;           ///< 4 a block, by columns
-  bool definite;             ///< whether only a definite part of each spring's Hessian is wanted
+  bool definite;             ///< whether only a definite part of a triangle's Hessian is wanted
   double least_curvature;    ///< across an arc, of its stiffness; what is lower counts as none
 };
 

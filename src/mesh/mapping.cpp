@@ -84,8 +84,9 @@ double Mapping::wantedSpread() const {
   return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
 
-/// Without the largest face, or, where that does not become one again, the next largest.
-std::optional<Points> Mapping::withoutAFace(const MeshLevel& level) {
+/// A map that begins without the largest face, or, where that does not become one again, without
+/// the next largest.
+std::optional<Points> Mapping::coarsestMap(const MeshLevel& level) {
   constexpr std::size_t kMostCuts = 8;
   std::vector<Eigen::Index> faces(level.shares.size());
   std::iota(faces.begin(), faces.end(), 0);
@@ -94,7 +95,7 @@ std::optional<Points> Mapping::withoutAFace(const MeshLevel& level) {
   });
   faces.resize(std::min(faces.size(), kMostCuts));
   for (const Eigen::Index cut : faces) {
-    if (auto points = withoutFace(level, cut)) return points;
+    if (auto points = coarsestMap(level, cut)) return points;
     if (has_map_ && ended_) break;
   }
   return {};
@@ -102,7 +103,7 @@ std::optional<Points> Mapping::withoutAFace(const MeshLevel& level) {
 
 /// Whatever the time, while there is no other map: only when the face that has been cut has shrunk,
 /// it is one again.
-std::optional<Points> Mapping::withoutFace(const MeshLevel& level, Eigen::Index cut) {
+std::optional<Points> Mapping::coarsestMap(const MeshLevel& level, Eigen::Index cut) {
   constexpr int kMostIterations = 600;
   constexpr double kLeastShape = 1e-4;
   const FoldFreeStart start =
@@ -125,7 +126,7 @@ std::optional<Points> Mapping::withoutFace(const MeshLevel& level, Eigen::Index 
 /// From a map of the coarsest mesh to one of the mesh itself, if none of its faces folds.
 std::optional<Points> Mapping::evenedOut(const Decimation& meshes) {
   constexpr int kSweepsBefore = 10;  // the first step of all vertices together
-  std::optional<Points> start = withoutAFace(meshes.levels.front());
+  std::optional<Points> start = coarsestMap(meshes.levels.front());
   if (!start) return {};
   Points points = std::move(*start);
   for (const MeshLevel& level : meshes.levels) {

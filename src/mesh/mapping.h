@@ -32,8 +32,8 @@ class Mapping {
   using Candidates = std::vector<Candidate>;
 
   void add(Candidate candidate, Candidates& candidates);
-  std::optional<Points> withoutAFace(const MeshLevel& level);
-  std::optional<Points> withoutFace(const MeshLevel& level, Eigen::Index cut);
+  std::optional<Points> coarsestMap(const MeshLevel& level);
+  std::optional<Points> coarsestMap(const MeshLevel& level, Eigen::Index cut);
   std::optional<Points> evenedOut(const Decimation& meshes);
   std::optional<Candidate> prepared(std::int32_t size);
   Candidate roundedOff(const Points& points);

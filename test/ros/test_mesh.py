@@ -13,6 +13,7 @@ from relax_mesh import relax_mesh
 from scenes import particle, solid_angles
 from shapes import BROKEN, bumpy, mesh, star
 
+
 def data(name):
     return os.path.join(rospkg.RosPack().get_path(PACKAGE), '..', 'shared', 'data', name)
 
