@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "relaxation_scenes.h"
+#include "spherical_springs/relaxation.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -85,18 +86,36 @@ TEST(TangentEnergy, ExpectedDropIsThatOfTheModel) {
   EXPECT_NEAR(energy.expectedDrop(step), expected, 1e-13 * std::abs(expected));
 }
 
+/// Of the Hessian, of its norm.
+double leastEigenvalue(const System& system, const Points& positions, Curvature curvature) {
+  const auto energy = energyAt(system, positions, curvature);
+  const Eigen::MatrixXd hessian = dense(energy.pattern(), energy.hessian());
+  EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-14 * hessian.norm());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).eigenvalues()[0] / hessian.norm();
+}
+
 TEST(TangentEnergy, DefiniteHessianIsDefiniteWhereTheExactOneIsNot) {
   for (const Scene& scene : {mixedScene(), testing::membraneScene(2)}) {
     const System system(scene, {});
-    const auto least = [&](Curvature curvature) {
-      const auto energy = energyAt(system, positionsOf(scene), curvature);
-      const Eigen::MatrixXd hessian = dense(energy.pattern(), energy.hessian());
-      EXPECT_LT((hessian - hessian.transpose()).norm(), 1e-14 * hessian.norm());
-      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).eigenvalues()[0] /
-             hessian.norm();
-    };
-    EXPECT_GT(least(Curvature::definite), -1e-15);
-    EXPECT_LT(least(Curvature::exact), -1e-4);
+    const Points positions = positionsOf(scene);
+    EXPECT_GT(leastEigenvalue(system, positions, Curvature::definite), -1e-15);
+    EXPECT_LT(leastEigenvalue(system, positions, Curvature::exact), -1e-4);
+  }
+}
+
+// One particle past others, close to one that a spring joins it with. Torques give rotations of the
+// whole scene a little curvature of either sign.
+TEST(TangentEnergy, TemperedHessianIsNearlyDefiniteRoundAFold) {
+  const Scene scene = testing::membraneScene(2);
+  const System system(scene, {});
+  const Points positions = relax(system, positionsOf(scene), {}).positions;
+  for (const AngleSpring& spring :
+       {system.springs<AngleSpring>()[0], system.springs<AngleSpring>()[200]}) {
+    const auto [a, b] = spring.particles;
+    Points folded = positions;
+    folded.col(a) = (0.1 * positions.col(a) + 0.9 * positions.col(b)).normalized();
+    EXPECT_LT(leastEigenvalue(system, folded, Curvature::exact), -1e-2);
+    EXPECT_GT(leastEigenvalue(system, folded, Curvature::tempered), -1e-4);
   }
 }
 
