@@ -4,59 +4,20 @@
 #include <cmath>
 
 #include "../buckets.h"
-#include "../curve_order.h"
 #include "../kernels/hessian_kernels.h"
 
 namespace spherical_springs::core {
 
 TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
-    : threads_(system.threads()), inertia_(std::move(inertia)) {
-  number(system, positions);
+    : threads_(system.threads()),
+      order_(particleOrder(system, positions)),
+      pattern_(freeGraph(system, order_, threads_), threads_),
+      inertia_(std::move(inertia)) {
   forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
   take(system);
   gradient_.resize(2 * freeCount());
   hessian_.resize(pattern_.graph.neighbours.size());
   block_values_.resize(pattern_.order.blocks());
-}
-
-/// Free particles along a curve, pinned ones after them.
-void TangentEnergy::number(const System& system, const Points& positions) {
-  particles_ = curveOrder(positions);
-  const auto free_end = std::stable_partition(particles_.begin(), particles_.end(),
-                                              [&](std::uint32_t i) { return !system.pinned(i); });
-  numbers_.resize(particles_.size());
-  for (std::uint32_t n = 0; n < particles_.size(); ++n) numbers_[particles_[n]] = n;
-  pattern_ = BlockPattern(freeGraph(system, free_end - particles_.begin()), threads_);
-}
-
-/// Which free particles, by number, springs join.
-Graph TangentEnergy::freeGraph(const System& system, std::size_t free) const {
-  auto all = dealtOut<std::uint32_t>(free, [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < free; ++i) visit(i, i);
-    forEachKind([&](auto kind) {
-      for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-        for (const std::uint32_t i : spring.particles) {
-          for (const std::uint32_t j : spring.particles) {
-            if (i != j && numbers_[i] < free && numbers_[j] < free) visit(numbers_[i], numbers_[j]);
-          }
-        }
-      }
-    });
-  });
-  std::vector<std::uint32_t> kept(free);
-  parallelFor(free, threads_, [&](std::ptrdiff_t i) {
-    const auto begin = all.begin(i), end = all.end(i);
-    std::sort(begin, end);
-    kept[i] = static_cast<std::uint32_t>(std::unique(begin, end) - begin);
-  });
-  Graph graph;
-  graph.first.assign(free + 1, 0);
-  for (std::size_t i = 0; i < free; ++i) graph.first[i + 1] = graph.first[i] + kept[i];
-  graph.neighbours.resize(graph.first.back());
-  parallelFor(free, threads_, [&](std::ptrdiff_t i) {
-    std::copy_n(all.begin(i), kept[i], graph.neighbours.begin() + graph.first[i]);
-  });
-  return graph;
 }
 
 /// Springs by the block of their first free particle in the order here.
@@ -68,10 +29,10 @@ void TangentEnergy::compile(const System& system) {
   const std::size_t blocks = pattern_.order.blocks();
   const auto lowest = [&](const Spring& spring) {
     std::uint32_t least = ~0u;
-    for (const std::uint32_t i : spring.particles) least = std::min(least, numbers_[i]);
+    for (const std::uint32_t i : spring.particles) least = std::min(least, order_.numbers[i]);
     return least;
   };
-  auto by_lowest = dealtOut<std::uint32_t>(particles_.size(), [&](const auto& visit) {
+  auto by_lowest = dealtOut<std::uint32_t>(order_.particles.size(), [&](const auto& visit) {
     for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowest(springs[s]), s);
   });
   compiled.first.resize(blocks + 1);
@@ -88,7 +49,7 @@ void TangentEnergy::compile(const System& system) {
   parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
     Spring& spring = compiled.springs[s];
     spring = springs[compiled.sources[s]];
-    for (std::uint32_t& i : spring.particles) i = numbers_[i];
+    for (std::uint32_t& i : spring.particles) i = order_.numbers[i];
     for (std::size_t i = 0; i < kEnds; ++i) {
       for (std::size_t j = 0; j < kEnds; ++j) {
         compiled.places[s][kEnds * i + j] = placeOf(spring.particles[i], spring.particles[j]);
@@ -99,9 +60,9 @@ void TangentEnergy::compile(const System& system) {
 
 bool TangentEnergy::fits(const System& system) const {
   constexpr double kMostChange = 2;  // factor of a stiffness
-  if (static_cast<std::size_t>(system.particleCount()) != particles_.size()) return false;
-  for (std::size_t n = 0; n < particles_.size(); ++n) {
-    if (system.pinned(particles_[n]) != (n >= freeCount())) return false;
+  if (static_cast<std::size_t>(system.particleCount()) != order_.particles.size()) return false;
+  for (std::size_t n = 0; n < order_.particles.size(); ++n) {
+    if (system.pinned(order_.particles[n]) != (n >= freeCount())) return false;
   }
   bool fits = true;
   forEachKind([&](auto kind) {
@@ -115,7 +76,7 @@ bool TangentEnergy::fits(const System& system) const {
       fits = stiffness <= kMostChange * spring.stiffness &&
              spring.stiffness <= kMostChange * stiffness;
       for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-        fits = fits && numbers_[spring.particles[j]] == compiled.springs[s].particles[j];
+        fits = fits && order_.numbers[spring.particles[j]] == compiled.springs[s].particles[j];
       }
     }
   });
@@ -153,17 +114,17 @@ TangentFrame carried(const TangentFrame& frame, const Vector3& p) {
 }  // namespace
 
 void TangentEnergy::place(const Points& positions) {
-  places_.resize(particles_.size());
-  parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
-    const Vector3 point = positions.col(particles_[n]);
+  places_.resize(order_.particles.size());
+  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
+    const Vector3 point = positions.col(order_.particles[n]);
     places_[n] = {tangentFrame(point), point};
   });
   findPinnedValue();
 }
 
 void TangentEnergy::carry(const Points& positions) {
-  parallelFor(particles_.size(), threads_, [&](std::ptrdiff_t n) {
-    const Vector3 point = positions.col(particles_[n]);
+  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
+    const Vector3 point = positions.col(order_.particles[n]);
     places_[n] = {carried(places_[n].frame, point), point};
   });
   findPinnedValue();
@@ -181,7 +142,7 @@ void TangentEnergy::findPinnedValue() {
 
 void TangentEnergy::setTargets(const Points& targets) {
   targets_.resize(freeCount());
-  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(particles_[n]);
+  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(order_.particles[n]);
 }
 
 void TangentEnergy::move(const Eigen::VectorXd& step) {
@@ -297,7 +258,7 @@ void TangentEnergy::evaluate(Curvature curvature) {
 // The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
 void TangentEnergy::addInertia(Curvature curvature) {
   for (std::size_t n = 0; n < freeCount(); ++n) {
-    const double stiffness = inertia_[particles_[n]] / unit_;
+    const double stiffness = inertia_[order_.particles[n]] / unit_;
     const auto& [frame, point] = places_[n];
     const auto c = tangentCondition(AngleSpring(), {point, targets_[n]}, {frame, frame}, curvature);
     value_ += 0.5 * stiffness * c.value * c.value;
@@ -334,16 +295,16 @@ Eigen::VectorXd TangentEnergy::reach() const {
 }
 
 Points TangentEnergy::positions() const {
-  Points result(3, particles_.size());
-  parallelFor(particles_.size(), threads_,
-              [&](std::ptrdiff_t n) { result.col(particles_[n]) = places_[n].point; });
+  Points result(3, order_.particles.size());
+  parallelFor(order_.particles.size(), threads_,
+              [&](std::ptrdiff_t n) { result.col(order_.particles[n]) = places_[n].point; });
   return result;
 }
 
 Points TangentEnergy::moves(const Eigen::VectorXd& step) const {
-  Points result = Points::Zero(3, static_cast<Eigen::Index>(particles_.size()));
+  Points result = Points::Zero(3, static_cast<Eigen::Index>(order_.particles.size()));
   for (std::size_t n = 0; n < freeCount(); ++n) {
-    result.col(particles_[n]) = places_[n].frame * step.segment<2>(2 * n);
+    result.col(order_.particles[n]) = places_[n].frame * step.segment<2>(2 * n);
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "block_matrix.h"
+#include "particle_order.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
@@ -75,7 +76,7 @@ class TangentEnergy {
   /// The tangent vectors by which a step moves the particles, in the same order.
   Points moves(const Eigen::VectorXd& step) const;
   /// Particle of each free one.
-  std::uint32_t particle(std::size_t free) const { return particles_[free]; }
+  std::uint32_t particle(std::size_t free) const { return order_.particles[free]; }
 
  private:
   template <class Spring>
@@ -87,8 +88,6 @@ class TangentEnergy {
     std::vector<std::uint32_t> first;
   };
 
-  void number(const System& system, const Points& positions);
-  Graph freeGraph(const System& system, std::size_t free) const;
   template <class Spring>
   void compile(const System& system);
   template <class Spring>
@@ -99,9 +98,8 @@ class TangentEnergy {
   void findPinnedValue();
 
   int threads_;
+  ParticleOrder order_;
   BlockPattern pattern_;
-  std::vector<std::uint32_t> particles_;  // of each number; free ones come first
-  std::vector<std::uint32_t> numbers_;    // of each particle
   PerKind<Compiled> compiled_;
   double unit_ = 1;
   Eigen::VectorXd inertia_;
