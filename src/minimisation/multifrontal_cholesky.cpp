@@ -1,7 +1,8 @@
 #include "multifrontal_cholesky.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
+
+#include "../kernels/elimination_kernels.h"
 
 namespace spherical_springs::core {
 
@@ -101,11 +102,8 @@ void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& val
     if (front.definite) addChild(part, dissection_.parts[child], front, fronts_[child]);
   }
   if (!front.definite) return;
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(front.own);
-  front.definite = factor.info() == Eigen::Success;
-  if (!front.definite || rest == 0) return;
-  front.own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(front.below);
-  front.rest.selfadjointView<Eigen::Lower>().rankUpdate(front.below, -1);
+  front.definite = eliminationKernels().eliminate(
+      {front.own.data(), front.below.data(), front.rest.data(), own, rest});
 }
 
 bool MultifrontalCholesky::refresh(const Blocks<double, 2>& values) {

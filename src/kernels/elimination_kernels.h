@@ -1,0 +1,25 @@
+// Elimination of unknowns from dense symmetric matrices, for the instruction set of this processor.
+#pragma once
+
+#include <cstddef>
+
+namespace spherical_springs::core {
+
+/// Of a symmetric matrix in parts, each by columns without gaps: `own` (own x own) and `rest` (rest
+/// x rest), of which the lower triangles count, and `below` (rest x own) between them.
+struct FrontMatrix {
+  double *own, *below, *rest;
+  std::ptrdiff_t own_size, rest_size;
+};
+
+struct EliminationKernels {
+  /// Leaves the Cholesky factor of the first unknowns in `own` and `below`, and what remains of the
+  /// others in `rest`.
+  /// @return whether `own` is positive definite; else the matrix is of no use.
+  bool (*eliminate)(const FrontMatrix& front);
+};
+
+/// Results of different instruction sets differ by rounding.
+const EliminationKernels& eliminationKernels();
+
+}  // namespace spherical_springs::core
