@@ -14,6 +14,7 @@ namespace spherical_springs::mesh {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kNone = ~0u;
 constexpr std::size_t kSweepBlock = 16;  // vertices that one thread moves in turn
 
 /// Numbers by the first and last of which each vertex's corners stand.
@@ -24,52 +25,76 @@ std::vector<std::uint32_t> firstCorners(const Faces& faces, std::size_t vertices
   return first;
 }
 
-/// A vertex of a closed mesh has as many neighbours as corners.
-core::Graph meshGraph(const Faces& faces, const std::vector<std::uint32_t>& first_corner) {
-  const std::size_t count = first_corner.size() - 1;
-  core::Graph graph;
-  graph.first.resize(count + 1);
-  for (std::size_t v = 0; v <= count; ++v) {
-    graph.first[v] = first_corner[v] + static_cast<std::uint32_t>(v);
-  }
-  graph.neighbours.resize(graph.first.back());
-  std::vector<std::uint32_t> next(graph.first.begin(), graph.first.end() - 1);
-  for (std::uint32_t v = 0; v < count; ++v) graph.neighbours[next[v]++] = v;
-  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      graph.neighbours[next[faces(k, f)]++] = static_cast<std::uint32_t>(faces((k + 1) % 3, f));
+/// Neighbours of the vertices before `free`, all of whose faces are there: the next corners of
+/// those.
+core::Graph meshGraph(const Faces& faces, std::int32_t free) {
+  const auto forEachEdge = [&](const auto& body) {
+    for (Eigen::Index c = 0; c < faces.size(); ++c) {
+      const std::int32_t v = faces(c), next = faces(c % 3 == 2 ? c - 2 : c + 1);
+      if (v < free && next < free) body(v, static_cast<std::uint32_t>(next));
     }
+  };
+  core::Graph graph;
+  graph.first.assign(free + 1, 0);
+  forEachEdge([&](std::int32_t v, std::uint32_t) { ++graph.first[v + 1]; });
+  for (std::int32_t v = 0; v < free; ++v) graph.first[v + 1] += graph.first[v] + 1;
+  graph.neighbours.resize(graph.first.back());
+  std::vector<std::uint32_t> place(graph.first.begin(), graph.first.end() - 1);
+  for (std::int32_t v = 0; v < free; ++v) {
+    graph.neighbours[place[v]++] = static_cast<std::uint32_t>(v);
   }
+  forEachEdge([&](std::int32_t v, std::uint32_t next) { graph.neighbours[place[v]++] = next; });
   return graph;
+}
+
+/// The vertices before `free` in an order that is local, and then the others.
+std::vector<std::uint32_t> freeFirst(const Points& points, std::int32_t free) {
+  std::vector<std::uint32_t> order = core::curveOrder(points.leftCols(free));
+  for (auto v = static_cast<std::uint32_t>(free); v < points.cols(); ++v) order.push_back(v);
+  return order;
 }
 
 }  // namespace
 
 MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
                      int threads)
-    : threads_(threads), vertices_(core::curveOrder(points)), faces_(faces), shares_(shares) {
+    : MapEnergy(faces, shares, points, static_cast<std::int32_t>(points.cols()), threads) {
+  area_ = 4 * core::kPi;
+}
+
+MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
+                     std::int32_t free, int threads)
+    : threads_(threads),
+      free_(free),
+      vertices_(freeFirst(points, free)),
+      faces_(faces),
+      shares_(shares) {
   const std::size_t count = vertices_.size();
   std::vector<std::int32_t> numbers(count);
   for (std::size_t n = 0; n < count; ++n) numbers[vertices_[n]] = static_cast<std::int32_t>(n);
   for (Eigen::Index c = 0; c < faces.size(); ++c) faces_(c) = numbers[faces(c)];
 
   first_corner_ = firstCorners(faces_, count);
-  pattern_ = core::BlockPattern(meshGraph(faces_, first_corner_), threads);
+  pattern_ = core::BlockPattern(meshGraph(faces_, free), threads);
   corners_.resize(faces_.size());
-  places_.resize(faces_.size());
+  places_.resize(faces_.size(), {kNone, kNone, kNone});
   std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
   for (Eigen::Index c = 0; c < faces_.size(); ++c) {
     const std::int32_t v = faces_(c);
     const std::uint32_t slot = next[v]++;
     corners_[slot] = static_cast<std::uint32_t>(c);
-    for (int k = 0; k < 3; ++k) places_[slot][k] = pattern_.place(v, faces_(k, c / 3));
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t other = faces_(k, c / 3);
+      if (v < free && other < free) places_[slot][k] = pattern_.place(v, other);
+    }
   }
   terms_.resize(faces_.cols());
-  gradient_.resize(static_cast<Eigen::Index>(2 * count));
+  gradient_.resize(2 * static_cast<Eigen::Index>(free));
   hessian_.resize(pattern_.graph.neighbours.size());
   order_ = core::blockOrder(pattern_.graph, kSweepBlock, threads);
   setWeights(FaceWeights::equal);
   place(points);
+  area_ = areas(points_).sum();
 }
 
 void MapEnergy::setWeights(FaceWeights weights) {
@@ -101,8 +126,8 @@ Points MapEnergy::points() const {
 }
 
 std::vector<Vector3> MapEnergy::moved(const Eigen::VectorXd& step) const {
-  std::vector<Vector3> result(points_.size());
-  core::parallelFor(points_.size(), threads_, [&](std::ptrdiff_t n) {
+  std::vector<Vector3> result = points_;
+  core::parallelFor(free_, threads_, [&](std::ptrdiff_t n) {
     result[n] = (points_[n] + frames_[n] * step.segment<2>(2 * n)).normalized();
   });
   return result;
@@ -113,14 +138,18 @@ double MapEnergy::valueAfter(const Eigen::VectorXd& step) const { return valueAt
 void MapEnergy::move(const Eigen::VectorXd& step) { put(moved(step)); }
 
 double MapEnergy::valueAt(const std::vector<Vector3>& points) const {
-  Eigen::VectorXd areas(faceCount());
-  const double value = core::parallelSum(faceCount(), threads_, [&](std::ptrdiff_t f) {
-    const FaceEnergy::Corners corners = {points[faces_(0, f)], points[faces_(1, f)],
-                                         points[faces_(2, f)]};
-    areas[f] = core::solidAngle(corners[0], corners[1], corners[2]);
-    return faceEnergy(f).value(corners);
+  if (!(std::abs(areas(points).sum() - area_) < 1)) return kInfinity;
+  return core::parallelSum(faceCount(), threads_, [&](std::ptrdiff_t f) {
+    return faceEnergy(f).value({points[faces_(0, f)], points[faces_(1, f)], points[faces_(2, f)]});
   });
-  return std::abs(areas.sum() - 4 * core::kPi) < 1 ? value : kInfinity;
+}
+
+Eigen::ArrayXd MapEnergy::areas(const std::vector<Vector3>& points) const {
+  Eigen::ArrayXd result(faceCount());
+  core::parallelFor(faceCount(), threads_, [&](std::ptrdiff_t f) {
+    result[f] = core::solidAngle(points[faces_(0, f)], points[faces_(1, f)], points[faces_(2, f)]);
+  });
+  return result;
 }
 
 FaceEnergy::Corners MapEnergy::corners(Eigen::Index face) const {
@@ -147,6 +176,7 @@ void MapEnergy::evaluate(FaceHessian hessian) {
       const int i = static_cast<int>(corners_[s] % 3);
       gradient_.segment<2>(2 * n) += terms.gradient.segment<2>(2 * i);
       for (int j = 0; j < 3; ++j) {
+        if (places_[s][j] == kNone) continue;  // of a vertex that stays
         hessian_[places_[s][j]] += terms.hessian.block<2, 2>(2 * i, 2 * j);
       }
     }
@@ -154,12 +184,7 @@ void MapEnergy::evaluate(FaceHessian hessian) {
 }
 
 double MapEnergy::spread() const {
-  Eigen::ArrayXd logs(faceCount());
-  core::parallelFor(faceCount(), threads_, [&](std::ptrdiff_t f) {
-    logs[f] = std::log(
-        core::solidAngle(points_[faces_(0, f)], points_[faces_(1, f)], points_[faces_(2, f)]) /
-        shares_[f]);
-  });
+  const Eigen::ArrayXd logs = (areas(points_) / shares_.array()).log();
   return std::sqrt((logs - logs.mean()).square().mean());
 }
 
@@ -213,7 +238,7 @@ void MapEnergy::sweep() {
     }
   });
   if (valueAt(points_) < kInfinity) return;
-  put(std::move(before));  // positive faces round a vertex alone may cover the sphere twice
+  put(std::move(before));  // positive faces round a vertex alone may cover a part twice
 }
 
 }  // namespace spherical_springs::mesh

@@ -14,15 +14,20 @@ namespace spherical_springs::mesh {
 /// its share, so that tiny faces do not rule before the large ones are about right.
 enum class FaceWeights { equal, root_of_share };
 
-/// The sum over the faces of their `FaceEnergy`; infinite where they do not cover the sphere once.
-/// Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the n-th vertex, in an order of
-/// its own.
+/// The sum over the faces of their `FaceEnergy`; infinite where they do not cover the sphere once,
+/// or a part of it as they did. Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the
+/// n-th vertex that moves, in an order of its own.
 class MapEnergy {
  public:
   using Hessian = core::Blocks<double, 2>;
 
   /// `points`: about where vertices are, for their order.
   MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points, int threads);
+
+  /// Of a patch of a map: the first `free` points, all of whose faces it has, move, and the others
+  /// stay.
+  MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
+            std::int32_t free, int threads);
 
   const core::BlockPattern& pattern() const { return pattern_; }
   Eigen::Index faceCount() const { return faces_.cols(); }
@@ -38,6 +43,7 @@ class MapEnergy {
   /// faces would not cover the sphere once.
   double valueAfter(const Eigen::VectorXd& step) const;
   void move(const Eigen::VectorXd& step);
+  double valueHere() const { return valueAt(points_); }  ///< without `evaluate`
 
   /// Moves each vertex by a Newton step of its own that lowers the energy, those before it being
   /// where they are now (Gauss and Seidel). Cures what a few vertices can cure among themselves,
@@ -58,6 +64,7 @@ class MapEnergy {
   double spread() const;
 
  private:
+  Eigen::ArrayXd areas(const std::vector<Vector3>& points) const;
   double valueAt(const std::vector<Vector3>& points) const;
   FaceEnergy faceEnergy(Eigen::Index face) const { return {shares_[face], weights_[face], shape_}; }
   FaceEnergy::Corners corners(Eigen::Index face) const;
@@ -69,6 +76,8 @@ class MapEnergy {
   std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
   int threads_;
+  std::int32_t free_;
+  double area_ = 0;  // of all faces together
   double shape_ = 0;
   std::vector<std::uint32_t> vertices_;  // of the mesh, by number here
   Faces faces_;                          // of numbers

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "basin_hopping.h"
 #include "coverage.h"
 #include "fold_free_start.h"
 #include "half_edges.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr double kRoundest = 0.1;  // weight of the faces' shape before the finish
 constexpr double kLowering = 0.3;  // of that weight from round to round
 constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a round
+constexpr double kNothing = 1e-9;  // drop that ends the finish
 
 /// Sizes of coarsest meshes to begin with, one after another while the map is not good enough. The
 /// way from a small one is short; one that is too small has lost thin limbs. Each leads to a
@@ -180,12 +182,47 @@ Mapping::Candidate Mapping::roundedOff(const Points& points) {
 
 /// Minimises the energy that is wanted.
 Mapping::Candidate Mapping::finished(const Points& points) {
-  constexpr double kNothing = 1e-9;  // drop of the energy in one step that ends it
   MapEnergy energy(faces_, shares_, points, options_.threads);
   MapDescent descent(energy, options_.threads);
   energy.setShape(options_.angle_weight);
-  descent.run(FaceHessian::exact, kNothing, [&] { return wanting(energy); });
+  if (options_.angle_weight > 0) {
+    descent.run(FaceHessian::exact, kNothing, [&] { return goOn(); });
+  } else {
+    finishAreas(energy, descent);
+  }
   return {energy.points(), energy.spread()};
+}
+
+/// Steps of all vertices and hops of patches in turn, more of what lowers the energy more: what is
+/// left is the matter of a few patches mostly, which would hold all others up.
+void Mapping::finishAreas(MapEnergy& energy, MapDescent& descent) {
+  constexpr int kFewSteps = 8, kManySteps = 64, kMostInVain = 10;
+  constexpr double kLittle = 1e-3;  // fall of the energy, as a share
+  BasinHopping hopping(faces_, shares_, vertices_, options_.threads);
+  int steps = kFewSteps, in_vain = 0;
+  while (wanting(energy) && in_vain < kMostInVain) {
+    const double before = energy.valueHere();
+    int step = 0;
+    descent.run(FaceHessian::exact, kNothing, [&] { return wanting(energy) && step++ < steps; });
+    const double fall = 1 - energy.valueHere() / before;
+
+    const bool worthwhile = hopped(hopping, energy, std::max(fall / 8, kLittle));
+    steps = worthwhile ? kFewSteps : std::min(2 * steps, kManySteps);
+    in_vain = worthwhile || fall > kLittle ? 0 : in_vain + 1;
+  }
+}
+
+/// Hops as long as each round lowers the energy by the share `worthwhile`.
+/// @return whether the first has done so.
+bool Mapping::hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile) {
+  constexpr int kMostRounds = 5;
+  Points map = energy.points();
+  for (int round = 0; round < kMostRounds && wanting(energy); ++round) {
+    const double fall = hopping.hop(map);
+    energy.place(map);
+    if (fall < worthwhile) return round > 0;
+  }
+  return true;
 }
 
 /// Whether to go on, towards the tolerance unless areas are not all that counts.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "basin_hopping.h"
 #include "decimation.h"
 #include "map_descent.h"
 #include "spherical_springs/mesh/sphere_map.h"
@@ -38,6 +39,8 @@ class Mapping {
   std::optional<Candidate> prepared(std::int32_t size);
   Candidate roundedOff(const Points& points);
   Candidate finished(const Points& points);
+  void finishAreas(MapEnergy& energy, MapDescent& descent);
+  bool hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile);
   double wantedSpread() const;
   bool wanting(const MapEnergy& energy);
   bool goOn();
