@@ -74,12 +74,17 @@ def write_obj(path, vertices, faces):
 
 
 def read_obj(path):
-    """Vertices and faces; of a face's corners only their vertices."""
-    rows = {"v": [], "f": []}
+    """Vertices and faces; of a vertex only its place, of a face's corners only their vertices."""
+    vertices, faces = [], []
     with open(path) as file:
         for kind, *fields in (line.split() for line in file if line[:2] in ("v ", "f ")):
-            rows[kind].append([field.split("/")[0] for field in fields])
-    return np.array(rows["v"], float), np.array(rows["f"], int) - 1
+            if kind == "v":
+                vertices.append(fields[:3])
+                continue
+            numbers = [int(field.split("/")[0]) for field in fields]
+            # Negative ones count back from the last vertex so far.
+            faces.append([n + len(vertices) if n < 0 else n - 1 for n in numbers])
+    return np.array(vertices, float), np.array(faces, int)
 
 
 def areas(vertices, faces):
