@@ -134,8 +134,9 @@ void Scene::place(const Points& positions, const Points& angular_velocities) {
 }
 
 void Scene::clear() {
-  particles_.clear();
-  forEachKind([&](auto kind) { springs_.get<typename decltype(kind)::type>().clear(); });
+  Scene empty(limits_);
+  empty.reserveIdsOf(*this);
+  *this = std::move(empty);  // gives its memory back
 }
 
 Scene::Scene(SceneLimits limits, const Ids& particle_ids, std::vector<Particle> particles,

@@ -60,11 +60,6 @@ class IdTable {
     items_.resize(kept);
   }
 
-  void clear() {
-    ids_.clear();
-    items_.clear();
-  }
-
  private:
   template <class Value>
   static void reserveFor(std::vector<Value>& values, std::size_t count) {

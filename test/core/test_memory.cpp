@@ -122,5 +122,16 @@ TEST_F(OutOfMemory, WhileASceneIsLoaded) {
   expectAllOrNothing([this](Simulation& s) { s.load({testing::randomScene(2, 20, 5), 3.}); });
 }
 
+TEST(Memory, OfASceneIsGivenBackWhenItIsCleared) {
+  Scene scene = testing::randomScene(1, 10, 15, 0.1, 1);
+  scene.clear();
+  const auto expectNone = [](const auto& table) {
+    EXPECT_EQ(0u, table.ids().capacity());
+    EXPECT_EQ(0u, table.items().capacity());
+  };
+  expectNone(scene.particles());
+  forEachKind([&](auto kind) { expectNone(scene.springs<typename decltype(kind)::type>()); });
+}
+
 }  // namespace
 }  // namespace spherical_springs::core
