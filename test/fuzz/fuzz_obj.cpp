@@ -2,6 +2,7 @@
 // are topological spheres have maps without folds and texture coordinates.
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -30,10 +31,27 @@ void requireReadBackTheSame(const mesh::TriangleMesh& mesh) {
   require(mesh.faces == again.faces, "faces read back");
 }
 
-void requireMapped(const mesh::TriangleMesh& surface) {
+/// Shares that differ much, as those of faces without area do, and maps evened out to the end take
+/// a hundred times as long. One mesh of sixty-four is mapped so.
+struct Effort {
+  double steepest;  ///< the largest share, of the smallest
+  int iterations;   ///< and no time, which would make less of a case on a slower machine
+};
+
+Effort effortFor(const std::string& text) {
+  return std::hash<std::string>()(text) % 64 == 0 ? Effort{1e9, 100} : Effort{30, 8};
+}
+
+Eigen::VectorXd sharesOf(const mesh::TriangleMesh& surface, double steepest) {
   const Eigen::VectorXd shares = mesh::faceShares(mesh::faceAreas(surface));
+  const Eigen::VectorXd near = shares.cwiseMax(shares.maxCoeff() / steepest);
+  return near * (4 * core::kPi / near.sum());
+}
+
+void requireMapped(const mesh::TriangleMesh& surface, Effort effort) {
+  const Eigen::VectorXd shares = sharesOf(surface, effort.steepest);
   mesh::MapOptions options;
-  options.max_time = 0.02;
+  options.go_on = [&](double) { return --effort.iterations > 0; };
   const core::Points map = mesh::sphereMap(surface, shares, options);
   core::fuzzing::requireUnitVectors(map);
   const mesh::Distortion distortion = summary(faceDistortion(surface, shares, map));
@@ -49,9 +67,10 @@ void requireMapped(const mesh::TriangleMesh& surface) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(data, data + size);
   mesh::TriangleMesh mesh;
   try {
-    mesh = meshOf(std::string(data, data + size));
+    mesh = meshOf(text);
   } catch (const std::invalid_argument&) {
     return 0;
   }
@@ -61,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   requireReadBackTheSame(mesh);
   try {
     requireTopologicalSphere(mesh);
-    requireMapped(mesh);
+    requireMapped(mesh, effortFor(text));
   } catch (const std::invalid_argument&) {
   }
   return 0;
