@@ -48,13 +48,13 @@ bool isThereAndNoFile(const fs::path& path) {
 }  // namespace
 
 void failTo(const std::string& what, const fs::path& path) {
-  throw std::runtime_error("cannot " + what + " " + path.string() + ": " +
+  throw std::runtime_error("cannot " + what + " " + onOneLine(path) + ": " +
                            std::system_category().message(errno));
 }
 
 std::ifstream openToRead(const fs::path& path) {
   if (orFailTo("read", path, [&] { return isThereAndNoFile(path); })) {
-    throw std::runtime_error("cannot read " + path.string() + ": not a file");
+    throw std::runtime_error("cannot read " + onOneLine(path) + ": not a file");
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) failTo("read", path);
@@ -63,7 +63,7 @@ std::ifstream openToRead(const fs::path& path) {
 
 void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
   if (orFailTo("write", path, [&] { return isThereAndNoFile(path); })) {
-    throw std::runtime_error("cannot write " + path.string() + ": not a file");
+    throw std::runtime_error("cannot write " + onOneLine(path) + ": not a file");
   }
   const fs::path part = partOf(path);
   try {

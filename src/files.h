@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "spherical_springs/range.h"
+
 namespace spherical_springs::core {
 
 /// @throw std::runtime_error: "cannot `what` `path`: " and what the system says.
@@ -18,7 +20,7 @@ auto orFailTo(const std::string& what, const std::filesystem::path& path, const 
   try {
     return use();
   } catch (const std::filesystem::filesystem_error& fault) {
-    throw std::runtime_error("cannot " + what + " " + path.string() + ": " +
+    throw std::runtime_error("cannot " + what + " " + onOneLine(path) + ": " +
                              fault.code().message());
   }
 }

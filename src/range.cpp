@@ -30,12 +30,16 @@ std::string toText(double value) {
   return text;
 }
 
-std::string shortened(const std::string& text) {
-  const std::size_t end = endOfShown(text);
-  std::string shown = text.substr(0, end);
-  for (char& c : shown) {
+std::string onOneLine(std::string text) {
+  for (char& c : text) {
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
   }
+  return text;
+}
+
+std::string shortened(const std::string& text) {
+  const std::size_t end = endOfShown(text);
+  const std::string shown = onOneLine(text.substr(0, end));
   return end < text.size() ? shown + "..." : shown;
 }
 

@@ -31,7 +31,10 @@ constexpr double kFastest = 1e100;
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
 std::string toText(double value);
 
-/// On one line: what would end it becomes `?`, and of a long text there is the beginning.
+/// Control characters, ends of lines among them, become `?`.
+std::string onOneLine(std::string text);
+
+/// On one line, and of a long text the beginning.
 std::string shortened(const std::string& text);
 
 /// The same between quotes, with the length of a text of which not all is there.

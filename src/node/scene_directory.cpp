@@ -46,7 +46,7 @@ fs::path SceneDirectory::inside(const std::string& path) const {
     fs::path whole = fs::weakly_canonical(directory_ / path);
     const fs::path from_here = whole.lexically_relative(directory_);
     if (from_here.empty() || *from_here.begin() == "..") {
-      refuse("path", path, "files inside " + directory_.string());
+      refuse("path", path, "files inside " + core::onOneLine(directory_));
     }
     if (from_here == "." || fs::is_directory(whole)) {
       refuse("path", path, "the name of a file, not a directory");

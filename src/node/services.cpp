@@ -157,7 +157,7 @@ void Services::loadScene(const LoadScene::Request& request, LoadScene::Response&
   auto file = core::readScene(path, limits);
   runner_.change([&](core::Simulation& s) { s.load(std::move(file)); });
   publisher_.diagnostics().relaxed("");
-  response.message = "loaded " + path.string();
+  response.message = "loaded " + core::onOneLine(path);
   publisher_.tell(response.message);
 }
 
@@ -170,7 +170,7 @@ void Services::saveScene(const SaveScene::Request& request, SaveScene::Response&
     return s.state().time;
   });
   core::writeScene(path, scene, time);
-  response.message = "saved " + path.string();
+  response.message = "saved " + core::onOneLine(path);
   publisher_.tell(response.message);
 }
 

@@ -15,6 +15,7 @@
 #include "progress_line.h"
 #include "spherical_springs/mesh/distortion.h"
 #include "spherical_springs/mesh/sphere_map.h"
+#include "spherical_springs/range.h"
 #include "springs_node.h"
 #include "task.h"
 #include "texture_coordinates.h"
@@ -50,7 +51,7 @@ void print(const char* when, const FaceDistortion& faces, double seconds) {
 
 [[noreturn]] void refuseWithoutMap(const fs::path& surface) {
   throw std::runtime_error(
-      surface.string() +
+      core::onOneLine(surface) +
       ": no map without folds was found, and no file has been written; to help it, begin from one "
       "(--sphere), or give a mesh with fewer thin triangles and areas that differ less");
 }
@@ -104,7 +105,7 @@ void run(const Options& options) {
     return faceDistortion(task.surface, task.shares, map);
   };
   if (task.inside_out) {
-    std::cerr << "warning: the faces of " << options.mesh.string()
+    std::cerr << "warning: the faces of " << core::onOneLine(options.mesh)
               << " look inwards: seen from outside they turn clockwise, and the map shows them "
                  "mirrored; with two corners of each face swapped it does not"
               << std::endl;

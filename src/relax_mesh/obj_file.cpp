@@ -123,7 +123,7 @@ TriangleMesh readObj(const std::filesystem::path& path) {
   try {
     return readObj(in);
   } catch (const std::invalid_argument& fault) {
-    throw std::invalid_argument(path.string() + ": " + fault.what());
+    throw std::invalid_argument(core::onOneLine(path) + ": " + fault.what());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "options.h"
 #include "spherical_springs/mesh/triangle_mesh.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {
 
@@ -26,7 +27,7 @@ auto about(const std::filesystem::path& path, const Use& use) {
   try {
     return use();
   } catch (const std::invalid_argument& fault) {
-    throw std::invalid_argument(path.string() + ": " + fault.what());
+    throw std::invalid_argument(core::onOneLine(path) + ": " + fault.what());
   }
 }
 

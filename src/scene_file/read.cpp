@@ -200,7 +200,7 @@ SceneFile readScene(const fs::path& path, SceneLimits limits) {
   try {
     return readScene(in, limits);
   } catch (const std::invalid_argument& fault) {
-    throw std::invalid_argument(path.string() + " is not a scene: " + fault.what());
+    throw std::invalid_argument(onOneLine(path) + " is not a scene: " + fault.what());
   }
 }
 

@@ -245,6 +245,35 @@ TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
   EXPECT_TRUE(fs::is_empty(directory_));
 }
 
+TEST_F(SceneFiles, AreNamedOnOneLine) {
+  const auto fault_of = [](const auto& use) -> std::string {
+    try {
+      use();
+    } catch (const std::exception& fault) {
+      return fault.what();
+    }
+    return "none";
+  };
+  const std::string shown = (directory_ / "a?b?").string();
+  const fs::path path = directory_ / "a\nb\x1b", nowhere = path / "c";
+  EXPECT_EQ(fault_of([&] { readScene(path, {}); }),
+            "cannot read " + shown + ": No such file or directory");
+  EXPECT_EQ(fault_of([&] { writeScene(nowhere, Scene(), 0); }),
+            "cannot write " + shown + "/c: No such file or directory");
+  std::ofstream(path) << "1";
+  EXPECT_EQ(fault_of([&] { readScene(path, {}); }).find(shown + " is not a scene: "), 0u);
+  EXPECT_EQ(fault_of([&] { readScene(nowhere, {}); }),
+            "cannot read " + shown + "/c: Not a directory");
+  const std::string too_long = path.string() + std::string(255, 'x');
+  EXPECT_EQ(fault_of([&] { readScene(too_long, {}); }),
+            "cannot read " + shown + std::string(255, 'x') + ": File name too long");
+  fs::remove(path);
+  fs::create_directory(path);
+  EXPECT_EQ(fault_of([&] { readScene(path, {}); }), "cannot read " + shown + ": not a file");
+  EXPECT_EQ(fault_of([&] { writeScene(path, Scene(), 0); }),
+            "cannot write " + shown + ": not a file");
+}
+
 TEST_F(SceneFiles, TakeTheirPlaceOfFilesAlone) {
   const fs::path pipe = directory_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -101,6 +103,20 @@ TEST(ObjFile, RefusesWhatIsNoMesh) {
 TEST(ObjFile, RefusesWhatIsNoFile) {
   EXPECT_THROW(readObj(std::filesystem::path("/nowhere/x.obj")), std::runtime_error);
   EXPECT_THROW(readObj(std::filesystem::temp_directory_path()), std::runtime_error);
+}
+
+TEST(ObjFile, IsNamedOnOneLine) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("a\nb" + std::to_string(::getpid()));
+  std::ofstream(path) << "v 0 0 0\n";
+  try {
+    readObj(path);
+    ADD_FAILURE() << "taken";
+  } catch (const std::invalid_argument& fault) {
+    EXPECT_EQ(std::string(fault.what()).find('\n'), std::string::npos) << fault.what();
+    EXPECT_NE(std::string(fault.what()).find("/a?b"), std::string::npos) << fault.what();
+  }
+  std::filesystem::remove(path);
 }
 
 }  // namespace

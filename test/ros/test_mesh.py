@@ -200,6 +200,7 @@ class TestRefusals(MeshTest):
                 ({'density': self.path('none')}, '/none: No such file'),
                 ({'mesh': self.path(300 * 'x')}, 'cannot read .*x: File name too long'),
                 ({'uv': self.path(300 * 'x')}, 'cannot write .*x: File name too long'),
+                ({'mesh': self.write('two\nlines.obj', vertices, faces[1:])}, r'two\?lines.obj: '),
                 ({'sphere': self.write('finer.obj', *bumpy(2))}, 'faces are not those'),
                 ({'sphere': self.write('reverse.obj', vertices, faces[::-1])}, 'faces are not those'),
                 ({'sphere': self.write('zero.obj', 0 * vertices, faces)}, 'vertex 0 is at'),
