@@ -149,7 +149,8 @@ int main(int argc, char** argv) {
     const auto options = parseOptions({argv + 1, argv + argc});
     if (options) run(*options);
   } catch (const std::exception& fault) {
-    std::cerr << "error: " << fault.what() << std::endl;
+    // ROS shows names that it does not take as they are.
+    std::cerr << "error: " << spherical_springs::core::onOneLine(fault.what()) << std::endl;
     return 1;
   }
   return 0;

@@ -209,6 +209,7 @@ class TestRefusals(MeshTest):
                 ({'colour': 'red'}, "'--colour'"),
                 ({'colour\n' + 200 * 'x': 'red'}, r"option '--colour\?x{91}\.\.\.'; see"),
                 ({'angle_weight': 'a\nlot'}, r"--angle-weight is 'a\?lot'; allowed: 0 to"),
+                ({'node': 'no\nname'}, r'\[no\?name\]'),
                 ({'node': 'nobody'}, 'no node /nobody answers')):
             with self.subTest(options=options):
                 self.assertRegex(self.refusal(**{'mesh': surface, **options}), pattern)
