@@ -73,8 +73,8 @@ int Damping::seriesTerms(double decays) {
   return terms;
 }
 
-double Damping::kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
-                     Points& velocities) const {
+double Damping::kick(const Points& positions, const std::vector<Vector3>& gradients,
+                     const Points& torques, double duration, Points& velocities) const {
   const double decays = fastestRate(gradients) * std::abs(duration);
   if (takenBySeries(decays)) {
     return kickBySeries(gradients, torques, duration, seriesTerms(decays), velocities);
@@ -82,6 +82,9 @@ double Damping::kick(const std::vector<Vector3>& gradients, const Points& torque
   double taken = sweep(gradients, duration / 2, velocities);
   velocities += duration * torques * inverse_masses_.asDiagonal();
   taken += sweep(gradients, duration / 2, velocities);
+  for (Eigen::Index i = 0; i < velocities.cols(); ++i) {
+    velocities.col(i) = tangentPart(positions.col(i), velocities.col(i));
+  }
   return taken;
 }
 

@@ -68,20 +68,6 @@ void checkEach(std::vector<Item>& items, const char* list, Check&& check) {
   }
 }
 
-/// Drops the part of `angular_velocity` along the position, and with it what is only its rounding;
-/// one that is normal to the position to rounding stays as it is, to the last bit.
-inline Vector3 tangentPart(const Vector3& position, const Vector3& angular_velocity) {
-  constexpr double kNormalTolerance = 4 * std::numeric_limits<double>::epsilon();
-  Vector3 tangent = angular_velocity;
-  for (int i = 0; i < 3; ++i) {  // more than once where little is left beside what is dropped
-    const double along = position.dot(tangent);
-    if (std::abs(along) <= kNormalTolerance * tangent.norm()) break;
-    tangent -= along * position;
-    if (tangent.norm() <= kNormalTolerance * angular_velocity.norm()) return Vector3::Zero();
-  }
-  return tangent;
-}
-
 inline void checkParticle(Particle& particle) {
   if (!particle.position.allFinite() || particle.position.isZero(0)) {
     refuse("position", particle.position, "any finite non-zero vector");

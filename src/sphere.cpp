@@ -149,4 +149,16 @@ Vector3 rotated(const Vector3& p, const Vector3& rotation) {
   return moved * (1.5 - 0.5 * moved.squaredNorm());
 }
 
+Vector3 tangentPart(const Vector3& position, const Vector3& angular_velocity) {
+  constexpr double kNormalTolerance = 4 * std::numeric_limits<double>::epsilon();
+  Vector3 tangent = angular_velocity;
+  for (int i = 0; i < 3; ++i) {  // more than once where little is left beside what is dropped
+    const double along = position.dot(tangent);
+    if (std::abs(along) <= kNormalTolerance * tangent.norm()) break;
+    tangent -= along * position;
+    if (tangent.norm() <= kNormalTolerance * angular_velocity.norm()) return Vector3::Zero();
+  }
+  return tangent;
+}
+
 }  // namespace spherical_springs::core

@@ -52,12 +52,12 @@ class Damping {
   static int seriesTerms(double decays);
 
   /// Velocities after `duration` [s], which may be negative, under `torques` [N m] and the damping,
-  /// at the positions of `gradients`. Where the damping is slow against the duration this is the
-  /// exact flow, to rounding; where it is fast, a composition of second order that is stable for
-  /// any coefficient.
+  /// at `positions` and their `gradients`. Where the damping is slow against the duration this is
+  /// the exact flow, to rounding; where it is fast, a composition of second order that is stable
+  /// for any coefficient.
   /// @return the energy that damping took out [J].
-  double kick(const std::vector<Vector3>& gradients, const Points& torques, double duration,
-              Points& velocities) const;
+  double kick(const Points& positions, const std::vector<Vector3>& gradients, const Points& torques,
+              double duration, Points& velocities) const;
 
  private:
   void addRate(const std::vector<Vector3>& gradients, const Points& velocities, double factor,

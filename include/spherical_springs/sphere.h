@@ -60,4 +60,8 @@ double solidAngle(const Vector3& a, const Vector3& b, const Vector3& c);
 /// length.
 Vector3 rotated(const Vector3& p, const Vector3& rotation);
 
+/// Drops the part of `angular_velocity` along the position, and with it what is only its rounding;
+/// one that is normal to the position to rounding stays as it is, to the last bit.
+Vector3 tangentPart(const Vector3& position, const Vector3& angular_velocity);
+
 }  // namespace spherical_springs::core

@@ -27,8 +27,9 @@ void ImplicitEuler::damp(State& state) {
   if (system_->damping().none()) return;
   system_->evaluate(state.positions, workspace_);
   workspace_.torques.setZero();
-  state.dissipated += system_->damping().kick(workspace_.end_gradients, workspace_.torques,
-                                              time_step_, state.angular_velocities);
+  state.dissipated +=
+      system_->damping().kick(state.positions, workspace_.end_gradients, workspace_.torques,
+                              time_step_, state.angular_velocities);
 }
 
 Points ImplicitEuler::inertialPositions(const State& state) const {

@@ -70,8 +70,8 @@ void SplittingIntegrator::kick(double duration, State& state) {
   system_->evaluate(state.positions, workspace_);
   Points& velocities = state.angular_velocities;
   if (!system_->damping().none()) {
-    state.dissipated +=
-        system_->damping().kick(workspace_.end_gradients, workspace_.torques, duration, velocities);
+    state.dissipated += system_->damping().kick(state.positions, workspace_.end_gradients,
+                                                workspace_.torques, duration, velocities);
     return;
   }
   parallelFor(system_->particleCount(), system_->threads(), [&](std::ptrdiff_t i) {

@@ -209,11 +209,13 @@ void DampedKick::applyTorques(const Patch& patch, double duration, const double*
   }
 }
 
+/// Little may be left of them beside the rounding of what they were, which is in any direction.
 void DampedKick::giveVelocities(const Patch& patch, const Velocities& velocities) const {
   for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      velocities.components[k][patch.first_slot + i] = last_[patch.first_row + i].values[k];
-    }
+    const std::uint32_t row = patch.first_row + i;
+    const Vector3 tangent = tangentPart(Eigen::Map<const Vector3>(velocities.positions[row].values),
+                                        Eigen::Map<const Vector3>(last_[row].values));
+    for (int k = 0; k < 3; ++k) velocities.components[k][patch.first_slot + i] = tangent[k];
   }
 }
 

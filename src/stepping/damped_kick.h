@@ -19,6 +19,7 @@ namespace spherical_springs::core {
 struct Velocities {
   std::array<double*, 3> components;  ///< arrays over slots [rad/s]
   const double* inverse_masses;       ///< likewise
+  const Row* positions;               ///< array over rows
 };
 
 class DampedKick {

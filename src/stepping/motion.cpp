@@ -132,7 +132,8 @@ double Motion::kickUnderSpringDamping(double kick) {
   });
   return damped_kick_->kick(kick,
                             {{velocities_[0].data(), velocities_[1].data(), velocities_[2].data()},
-                             inverse_masses_.data()});
+                             inverse_masses_.data(),
+                             positions_.data()});
 }
 
 void Motion::driftPatch(Particles particles, const Drifts& drifts) const {

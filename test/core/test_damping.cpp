@@ -25,7 +25,7 @@ struct Damped {
     return result;
   }
   double kick(const Points& torques, double duration) {
-    return system.damping().kick(workspace.end_gradients, torques, duration,
+    return system.damping().kick(state.positions, workspace.end_gradients, torques, duration,
                                  state.angular_velocities);
   }
 };

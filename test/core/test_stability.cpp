@@ -89,6 +89,24 @@ TEST(LongRun, KeepsEnergyAndAngularMomentum) {
   }
 }
 
+// What dampers leave of so much faster a light particle is rounding, in any direction.
+TEST(StrongDamping, OfALightParticleLeavesItOnTheSphere) {
+  for (const char* method : {"euler", "verlet", "fourth_order", "implicit_euler"}) {
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      testing::Random random(seed);
+      std::vector<Particle> particles(2);
+      for (Particle& particle : particles) particle.position = random.unitVector();
+      particles[0].mass = kSmallest;
+      particles[1].pinned = true;
+      AngleSpring spring = angleSpring(0, 1, 3);
+      spring.damping = random.between(0.1, 10);
+      const Scene scene = testing::sceneOf(particles, arcs({spring}));
+      SCOPED_TRACE(method + (" from seed " + std::to_string(seed)));
+      expectSound(Trajectory(scene, method, 1, 4).state);
+    }
+  }
+}
+
 TEST(LongRun, OfAThousandParticlesStaysSound) {
   const std::uint32_t count = 1000;
   testing::Random random(1);

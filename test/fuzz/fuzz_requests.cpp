@@ -101,7 +101,9 @@ class Requests {
     fuzzing::requireUnitVectors(result.positions);
     fuzzing::require(std::isfinite(result.energy_before), "the energy before is finite");
     fuzzing::require(std::isfinite(result.max_torque), "the torque is finite");
-    fuzzing::require(result.energy_after <= result.energy_before, "the energy has not grown");
+    constexpr double kRounding = 1e-13;  // beside which the torque decides what is better
+    fuzzing::require(result.energy_after <= (1 + kRounding) * result.energy_before,
+                     "the energy has not grown");
     simulation_.settle(result.positions);
   }
 
