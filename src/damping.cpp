@@ -79,6 +79,10 @@ double Damping::kick(const Points& positions, const std::vector<Vector3>& gradie
   if (takenBySeries(decays)) {
     return kickBySeries(gradients, torques, duration, seriesTerms(decays), velocities);
   }
+  if (duration < 0) {
+    velocities += duration * torques * inverse_masses_.asDiagonal();
+    return 0;
+  }
   double taken = sweep(gradients, duration / 2, velocities);
   velocities += duration * torques * inverse_masses_.asDiagonal();
   taken += sweep(gradients, duration / 2, velocities);

@@ -54,7 +54,7 @@ class Damping {
   /// Velocities after `duration` [s], which may be negative, under `torques` [N m] and the damping,
   /// at `positions` and their `gradients`. Where the damping is slow against the duration this is
   /// the exact flow, to rounding; where it is fast, a composition of second order that is stable
-  /// for any coefficient.
+  /// for any coefficient. Back in time that would grow without bound: torques act alone there.
   /// @return the energy that damping took out [J].
   double kick(const Points& positions, const std::vector<Vector3>& gradients, const Points& torques,
               double duration, Points& velocities) const;

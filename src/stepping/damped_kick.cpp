@@ -102,7 +102,15 @@ double DampedKick::kick(double duration, const Velocities& velocities) {
   if (Damping::takenBySeries(decays)) {
     return kickBySeries(duration, Damping::seriesTerms(decays), velocities);
   }
-  return kickBySweeps(duration, velocities);
+  return duration < 0 ? kickByTorques(duration, velocities) : kickBySweeps(duration, velocities);
+}
+
+double DampedKick::kickByTorques(double duration, const Velocities& velocities) {
+  return sumOverPatches([&](std::size_t patch) {
+    applyTorques(layout_.patches()[patch], duration, velocities.inverse_masses);
+    giveVelocities(layout_.patches()[patch], velocities);
+    return 0.;
+  });
 }
 
 template <class Work>

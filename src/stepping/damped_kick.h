@@ -43,6 +43,7 @@ class DampedKick {
  private:
   double kickBySeries(double duration, int terms, const Velocities& velocities);
   double addTerm(std::size_t patch, const SeriesTerm& term, const Velocities& velocities);
+  double kickByTorques(double duration, const Velocities& velocities);
   double kickBySweeps(double duration, const Velocities& velocities);
   double sweepThere(std::size_t patch, const ViscousFlow* viscous);
   double sweepBack(std::size_t patch, const ViscousFlow* viscous);

@@ -107,6 +107,26 @@ TEST(StrongDamping, OfALightParticleLeavesItOnTheSphere) {
   }
 }
 
+// Damping that is slow where a step begins and fast within it, where kicks go back in time.
+TEST(StrongDamping, NearAntipodalVerticesStaysFinite) {
+  std::vector<Particle> particles(3);
+  particles[0].position = Vector3(1, 0, 0);
+  particles[0].angular_velocity = Vector3(0, 1, 2);
+  particles[1].position = Vector3(-1, 0, 0);
+  particles[2].position = Vector3(0, 1, 0);
+  particles[1].pinned = particles[2].pinned = true;
+  SpringLists springs;
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, 0)};
+  springs.get<SolidAngleSpring>()[0].damping = 4;
+  const Scene scene = testing::sceneOf(particles, springs);
+  for (const char* method : {"euler", "verlet", "fourth_order", "implicit_euler"}) {
+    SCOPED_TRACE(method);
+    const Trajectory end(scene, method, 1e-3, 10);
+    expectSound(end.state);
+    EXPECT_LT(end.state.angular_velocities.norm(), 1.1 * particles[0].angular_velocity.norm());
+  }
+}
+
 TEST(LongRun, OfAThousandParticlesStaysSound) {
   const std::uint32_t count = 1000;
   testing::Random random(1);
