@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "../parallel.h"
@@ -24,19 +23,30 @@ Eigen::VectorXd shaken(const Patch& patch, std::uint32_t seed) {
   return shares;
 }
 
+/// Without shape, one a face.
+Eigen::VectorXd energies(const Faces& faces, const Eigen::VectorXd& shares, const Points& points) {
+  Eigen::VectorXd result(faces.cols());
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    const auto corner = [&](int k) { return points.col(faces(k, f)); };
+    result[f] = FaceEnergy{shares[f], 1, 0}.value({corner(0), corner(1), corner(2)});
+  }
+  return result;
+}
+
 /// Where descent leads from `points`.
-std::pair<Points, double> descended(const Patch& patch, const Eigen::VectorXd& shares,
-                                    const Points& points, double slow) {
+Points descended(const Patch& patch, const Eigen::VectorXd& shares, const Points& points,
+                 double slow) {
   constexpr int kMostSteps = 200;
   MapEnergy energy(patch.faces, shares, points, patch.free, 1);
   int steps = 0;
   MapDescent(energy, 1).run(FaceHessian::exact, slow, [&] { return steps++ < kMostSteps; });
-  return {energy.points(), energy.valueHere()};
+  return energy.points();
 }
 
-double valueOf(const Patch& patch, const Points& points) {
-  MapEnergy energy(patch.faces, patch.shares, points, patch.free, 1);
-  return energy.valueHere();
+Points hopped(const Patch& patch, const Points& points, std::uint32_t seed) {
+  constexpr double kSlowAway = 1e-2, kSlowBack = 1e-4;  // drops in one step that end it
+  const Points away = descended(patch, shaken(patch, seed), points, kSlowAway);
+  return descended(patch, patch.shares, away, kSlowBack);
 }
 
 }  // namespace
@@ -49,20 +59,12 @@ BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, st
       threads_(threads),
       cutter_(faces, shares, vertices) {}
 
-Eigen::VectorXd BasinHopping::energies(const Points& map) const {
-  Eigen::VectorXd result(faces_.cols());
-  core::parallelFor(faces_.cols(), threads_, [&](std::ptrdiff_t f) {
-    const FaceEnergy energy{shares_[f], 1, 0};
-    result[f] = energy.value({map.col(faces_(0, f)), map.col(faces_(1, f)), map.col(faces_(2, f))});
-  });
-  return result;
-}
-
 /// Each try is on a patch about a face that is drawn by its energy, or where that is in one of the
 /// patches before, or next to it, on the last of those.
-std::vector<Patch> BasinHopping::drawPatches(std::size_t size, const Eigen::VectorXd& energies,
+std::vector<Patch> BasinHopping::drawPatches(std::size_t size, const Points& map,
                                              std::vector<Try>& tries) {
-  std::discrete_distribution<Eigen::Index> by_energy(energies.begin(), energies.end());
+  const Eigen::VectorXd weights = energies(faces_, shares_, map);
+  std::discrete_distribution<Eigen::Index> by_energy(weights.begin(), weights.end());
   std::vector<Patch> patches;
   cutter_.begin();
   for (Try& one : tries) {
@@ -75,30 +77,28 @@ std::vector<Patch> BasinHopping::drawPatches(std::size_t size, const Eigen::Vect
 }
 
 double BasinHopping::hop(Points& map) {
-  const double before = energies(map).sum();
+  const double before = energies(faces_, shares_, map).sum();
   for (const std::size_t size : {400, 800}) hop(size, map);
-  return 1 - energies(map).sum() / before;
+  return 1 - energies(faces_, shares_, map).sum() / before;
 }
 
 void BasinHopping::hop(std::size_t size, Points& map) {
-  constexpr std::size_t kTries = 4;
-  constexpr double kSlowAway = 1e-2, kSlowBack = 1e-4;  // drops in one step that end it
-  std::vector<Try> tries(kTries);
-  const std::vector<Patch> patches = drawPatches(size, energies(map), tries);
-  core::forOnThreads(kTries, threads_, [&](std::ptrdiff_t t) {
+  std::vector<Try> tries(4);
+  const std::vector<Patch> patches = drawPatches(size, map, tries);
+  core::forOnThreads(static_cast<std::ptrdiff_t>(tries.size()), threads_, [&](std::ptrdiff_t t) {
     const Patch& patch = patches[tries[t].patch];
-    const Points start =
-        descended(patch, shaken(patch, tries[t].seed), patch.of(map), kSlowAway).first;
-    std::tie(tries[t].points, tries[t].energy) = descended(patch, patch.shares, start, kSlowBack);
+    tries[t].points = hopped(patch, patch.of(map), tries[t].seed);
   });
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    const Try* best = nullptr;
-    for (const Try& one : tries) {
-      if (one.patch == p && (best == nullptr || one.energy < best->energy)) best = &one;
-    }
-    if (best->energy < valueOf(patches[p], patches[p].of(map))) {
-      patches[p].putInto(map, best->points);
-    }
+  std::vector<double> lowest;
+  for (const Patch& patch : patches) {
+    lowest.push_back(energies(patch.faces, patch.shares, patch.of(map)).sum());
+  }
+  for (const Try& one : tries) {
+    const Patch& patch = patches[one.patch];
+    const double energy = energies(patch.faces, patch.shares, one.points).sum();
+    if (!(energy < lowest[one.patch])) continue;
+    lowest[one.patch] = energy;
+    patch.putInto(map, one.points);
   }
 }
 

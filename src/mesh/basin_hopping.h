@@ -5,7 +5,6 @@
 #include <random>
 #include <vector>
 
-#include "map_energy.h"
 #include "patch.h"
 
 namespace spherical_springs::mesh {
@@ -28,14 +27,11 @@ class BasinHopping {
   struct Try {
     std::size_t patch;
     std::uint32_t seed;  // of the noise
-    Points points;
-    double energy;
+    Points points;       // of the patch after it
   };
 
-  Eigen::VectorXd energies(const Points& map) const;
   void hop(std::size_t size, Points& map);
-  std::vector<Patch> drawPatches(std::size_t size, const Eigen::VectorXd& energies,
-                                 std::vector<Try>& tries);
+  std::vector<Patch> drawPatches(std::size_t size, const Points& map, std::vector<Try>& tries);
 
   const Faces& faces_;
   const Eigen::VectorXd& shares_;
