@@ -1,6 +1,5 @@
 #include "basin_hopping.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -53,11 +52,7 @@ Points hopped(const Patch& patch, const Points& points, std::uint32_t seed) {
 
 BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
                            int threads)
-    : faces_(faces),
-      shares_(shares),
-      vertices_(static_cast<std::size_t>(vertices)),
-      threads_(threads),
-      cutter_(faces, shares, vertices) {}
+    : faces_(faces), shares_(shares), threads_(threads), cutter_(faces, shares, vertices) {}
 
 /// Each try is on a patch about a face that is drawn by its energy, or where that is in one of the
 /// patches before, or next to it, on the last of those.
@@ -68,7 +63,7 @@ std::vector<Patch> BasinHopping::drawPatches(std::size_t size, const Points& map
   std::vector<Patch> patches;
   cutter_.begin();
   for (Try& one : tries) {
-    Patch patch = cutter_.cut(by_energy(random_), std::min(size, vertices_ / 2));
+    Patch patch = cutter_.cut(by_energy(random_), size);
     if (patch.free > 0) patches.push_back(std::move(patch));
     one.patch = patches.size() - 1;
     one.seed = static_cast<std::uint32_t>(random_());

@@ -35,7 +35,6 @@ class BasinHopping {
 
   const Faces& faces_;
   const Eigen::VectorXd& shares_;
-  std::size_t vertices_;
   int threads_;
   PatchCutter cutter_;
   std::mt19937 random_;

@@ -60,6 +60,23 @@ TEST_P(Dampings, BySeriesAreAFlow) {
 }
 
 // The two ways of computing the flow agree to second order where both hold.
+TEST_P(Dampings, FastOnesLeaveNothingAlongThePosition) {
+  Damped damped(1e12, GetParam());
+  damped.kick(Points::Zero(3, 8), 0.01);
+  for (int i = 0; i < 8; ++i) {
+    const Vector3 left = damped.state.angular_velocities.col(i);
+    EXPECT_LE(std::abs(left.dot(damped.state.positions.col(i))), 1e-15 * left.norm());
+  }
+}
+
+TEST_P(Dampings, FastOnesDoNotActBackInTime) {
+  Damped damped(1e12, GetParam());
+  const Points torques = damped.workspace.torques, before = damped.state.angular_velocities;
+  EXPECT_EQ(damped.kick(torques, -0.01), 0);
+  const Points expected = before - 0.01 * torques * damped.system.inverseMasses().asDiagonal();
+  EXPECT_LT((damped.state.angular_velocities - expected).norm(), 1e-14 * expected.norm());
+}
+
 TEST_P(Dampings, FastOnesAreTheLimitOfSlowOnes) {
   double differences[2];
   for (const int fine : {0, 1}) {
