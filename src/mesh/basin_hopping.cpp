@@ -22,37 +22,43 @@ Eigen::VectorXd shaken(const Patch& patch, std::uint32_t seed) {
   return shares;
 }
 
-/// Without shape, one a face.
-Eigen::VectorXd energies(const Faces& faces, const Eigen::VectorXd& shares, const Points& points) {
+}  // namespace
+
+BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
+                           double shape, int threads)
+    : faces_(faces),
+      shares_(shares),
+      shape_(shape),
+      threads_(threads),
+      cutter_(faces, shares, vertices) {}
+
+/// One a face.
+Eigen::VectorXd BasinHopping::energies(const Faces& faces, const Eigen::VectorXd& shares,
+                                       const Points& points) const {
   Eigen::VectorXd result(faces.cols());
   for (Eigen::Index f = 0; f < faces.cols(); ++f) {
     const auto corner = [&](int k) { return points.col(faces(k, f)); };
-    result[f] = FaceEnergy{shares[f], 1, 0}.value({corner(0), corner(1), corner(2)});
+    result[f] = FaceEnergy{shares[f], 1, shape_}.value({corner(0), corner(1), corner(2)});
   }
   return result;
 }
 
 /// Where descent leads from `points`.
-Points descended(const Patch& patch, const Eigen::VectorXd& shares, const Points& points,
-                 double slow) {
+Points BasinHopping::descended(const Patch& patch, const Eigen::VectorXd& shares,
+                               const Points& points, double slow) const {
   constexpr int kMostSteps = 200;
   MapEnergy energy(patch.faces, shares, points, patch.free, 1);
+  energy.setShape(shape_);
   int steps = 0;
   MapDescent(energy, 1).run(FaceHessian::exact, slow, [&] { return steps++ < kMostSteps; });
   return energy.points();
 }
 
-Points hopped(const Patch& patch, const Points& points, std::uint32_t seed) {
+Points BasinHopping::hopped(const Patch& patch, const Points& points, std::uint32_t seed) const {
   constexpr double kSlowAway = 1e-2, kSlowBack = 1e-4;  // drops in one step that end it
   const Points away = descended(patch, shaken(patch, seed), points, kSlowAway);
   return descended(patch, patch.shares, away, kSlowBack);
 }
-
-}  // namespace
-
-BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
-                           int threads)
-    : faces_(faces), shares_(shares), threads_(threads), cutter_(faces, shares, vertices) {}
 
 /// Each try is on a patch about a face that is drawn by its energy, or where that is in one of the
 /// patches before, or next to it, on the last of those.

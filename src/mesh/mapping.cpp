@@ -18,6 +18,7 @@ constexpr double kRoundest = 0.1;  // weight of the faces' shape before the fini
 constexpr double kLowering = 0.3;  // of that weight from round to round
 constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a round
 constexpr double kNothing = 1e-9;  // drop that ends the finish
+constexpr double kFaint = 1e-9;    // shape that holds edges below pi, and hardly anything else
 
 /// Sizes of coarsest meshes to begin with, one after another while the map is not good enough. The
 /// way from a small one is short; one that is too small has lost thin limbs. Each leads to a
@@ -184,8 +185,8 @@ Mapping::Candidate Mapping::roundedOff(const Points& points) {
 Mapping::Candidate Mapping::finished(const Points& points) {
   MapEnergy energy(faces_, shares_, points, options_.threads);
   MapDescent descent(energy, options_.threads);
-  energy.setShape(options_.angle_weight);
   if (options_.angle_weight > 0) {
+    energy.setShape(options_.angle_weight);
     descent.run(FaceHessian::exact, kNothing, [&] { return goOn(); });
   } else {
     finishAreas(energy, descent);
@@ -198,7 +199,8 @@ Mapping::Candidate Mapping::finished(const Points& points) {
 void Mapping::finishAreas(MapEnergy& energy, MapDescent& descent) {
   constexpr int kFewSteps = 8, kManySteps = 64, kMostInVain = 10;
   constexpr double kLittle = 1e-3;  // fall of the energy, as a share
-  BasinHopping hopping(faces_, shares_, vertices_, options_.threads);
+  energy.setShape(kFaint);
+  BasinHopping hopping(faces_, shares_, vertices_, kFaint, options_.threads);
   int steps = kFewSteps, in_vain = 0;
   while (wanting(energy) && in_vain < kMostInVain) {
     const double before = energy.valueHere();

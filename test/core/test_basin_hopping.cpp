@@ -118,7 +118,7 @@ TEST(Patch, NewtonsMethodEndsAtAMinimumOfIt) {
 TEST(BasinHopping, LeavesMinimaOfNewtonsMethod) {
   const Stuck stuck(3);
   Points map = stuck.map;
-  BasinHopping hopping(stuck.mesh.faces, stuck.shares, 642, 2);
+  BasinHopping hopping(stuck.mesh.faces, stuck.shares, 642, 0, 2);
   double left = 1;
   for (int round = 0; round < 5; ++round) {
     const double fall = hopping.hop(map);
@@ -133,8 +133,8 @@ TEST(BasinHopping, LeavesMinimaOfNewtonsMethod) {
 TEST(BasinHopping, IsTheSameForAnyNumberOfThreads) {
   const Stuck stuck(2);
   Points one = stuck.map, two = stuck.map;
-  BasinHopping(stuck.mesh.faces, stuck.shares, 162, 1).hop(one);
-  BasinHopping(stuck.mesh.faces, stuck.shares, 162, 2).hop(two);
+  BasinHopping(stuck.mesh.faces, stuck.shares, 162, 0, 1).hop(one);
+  BasinHopping(stuck.mesh.faces, stuck.shares, 162, 0, 2).hop(two);
   EXPECT_NE(one, stuck.map);
   EXPECT_EQ(one, two);
 }
@@ -146,7 +146,7 @@ TEST(BasinHopping, BearsMeshesOfAFewFaces) {
   shares *= 4 * core::kPi / shares.sum();
   Points map = mesh.vertices.colwise().normalized();
   if (!coversOnce(mesh.faces, map)) GTEST_FAIL() << "the tetrahedron is not about its centre";
-  EXPECT_GE(BasinHopping(mesh.faces, shares, 4, 1).hop(map), 0);
+  EXPECT_GE(BasinHopping(mesh.faces, shares, 4, 0, 1).hop(map), 0);
   EXPECT_TRUE(coversOnce(mesh.faces, map));
 }
 

@@ -284,5 +284,19 @@ TEST(SphereMap, RefusesFaultyArguments) {
   EXPECT_THROW(sphereMap(mesh, shares, options), std::invalid_argument);
 }
 
+// Areas alone would let edges come as near to pi as rounding tells.
+TEST(SphereMap, KeepsEdgesBelowPi) {
+  const TriangleMesh mesh = testing::bumps(0, 8);
+  Eigen::VectorXd areas = faceAreas(mesh);
+  for (Eigen::Index f = 1; f < 20; f += 2) areas[f] *= 1e-9;
+  const Points map = sphereMap(mesh, faceShares(areas), patient(1e-3));
+  for (Eigen::Index f = 0; f < 20; ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 a = map.col(mesh.faces(k, f)), b = map.col(mesh.faces((k + 1) % 3, f));
+      EXPECT_GT((a + b).norm(), 1e-5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace spherical_springs::mesh
