@@ -20,14 +20,16 @@ constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a
 constexpr double kNothing = 1e-9;  // drop that ends the finish
 constexpr double kFaint = 1e-9;    // shape that holds edges below pi, and hardly anything else
 
+constexpr std::int32_t kMostCoarsest = 5000;  // vertices of a coarsest mesh
+
 /// Sizes of coarsest meshes to begin with, one after another while the map is not good enough. The
 /// way from a small one is short; one that is too small has lost thin limbs. Each leads to a
 /// minimum of its own, so that more of them help where there is time.
 std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
-  constexpr std::int32_t kLeast = 100, kMost = 5000;
+  constexpr std::int32_t kLeast = 100;
   constexpr int kMore = 24;
   constexpr double kGoldenRatio = 0.618033988749895;
-  const std::int32_t most = std::min(vertices, kMost), least = std::min(most, kLeast);
+  const std::int32_t most = std::min(vertices, kMostCoarsest), least = std::min(most, kLeast);
   std::vector<std::int32_t> sizes;
   const auto add = [&](std::int32_t size) {
     if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
@@ -45,8 +47,10 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 
 Points Mapping::run(const std::optional<Points>& start) {
   constexpr double kPromising = 10;  // tolerances
-  // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices.
-  const double several = std::pow(4000. / vertices_, 2);
+  // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices, and
+  // of a small coarsest mesh and the mesh itself wherever that is one to begin with.
+  const double several =
+      std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
   std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
   Candidates candidates;
   if (start) add(roundedOff(*start), candidates);
