@@ -83,6 +83,21 @@ bool coversOnce(const mesh::Distortion& d) {
   return d.folded == 0 && std::abs(d.total_area - 4 * core::kPi) < 1e-6;
 }
 
+/// Whether they are so by more than 1e-6 rad: nearer to it, plain formulas of areas lose digits.
+bool edgesBelowPi(const mesh::Faces& faces, const Points& map) {
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if ((map.col(faces(k, f)) + map.col(faces((k + 1) % 3, f))).norm() < 1e-6) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether the map that springs have relaxed goes before the one they began from.
+bool isBetter(const mesh::Distortion& relaxed, const mesh::Distortion& before) {
+  return coversOnce(relaxed) && relaxed.spread < before.spread;
+}
+
 void write(const Options& options, const Task& task, const Points& map,
            const FaceDistortion& faces) {
   core::replaceFile(options.output, [&](std::ostream& out) {
@@ -128,7 +143,7 @@ void run(const Options& options) {
       node.relax({map, task.surface.faces, task.shares, kWeakest + options.angle_weight},
                  Times(task.surface.vertices.cols()).relaxation);
   const FaceDistortion after = distortionOf(relaxed);
-  if (coversOnce(summary(after)) && summary(after).spread < summary(faces).spread) {
+  if (isBetter(summary(after), summary(faces)) && edgesBelowPi(task.surface.faces, relaxed)) {
     map = relaxed;
     faces = after;
   }
