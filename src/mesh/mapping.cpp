@@ -123,7 +123,7 @@ std::optional<Points> Mapping::coarsestMap(const MeshLevel& level, Eigen::Index 
   for (double shape = 1; shape > kLeastShape && !given_up(); shape *= kLowering) {
     energy.setShape(shape);
     descent.runWithSweeps(FaceHessian::definite, kSlow,
-                          [&] { return ++iterations < kMostIterations && (!has_map_ || goOn()); });
+                          [&] { return ++iterations < kMostIterations && (goOn() || !has_map_); });
     Points points = energy.points().leftCols(level.vertex_count);
     if (coversOnce(level.faces, points)) return points;
   }
@@ -238,8 +238,8 @@ bool Mapping::wanting(const MapEnergy& energy) {
 
 bool Mapping::goOn() {
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
-  if (elapsed >= options_.max_time) ended_ = true;
-  if (!ended_ && !options_.go_on(elapsed / options_.max_time)) ended_ = true;
+  const bool in_time = elapsed < options_.max_time;
+  if (!options_.go_on(in_time ? elapsed / options_.max_time : 1) || !in_time) ended_ = true;
   return !ended_;
 }
 

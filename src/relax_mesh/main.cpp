@@ -64,17 +64,15 @@ Points mapOf(const Task& task, const Options& asked) {
   ProgressLine progress("mapping");
   options.go_on = [&](double fraction) {
     progress.show(fraction);
-    return !interrupted() && ros::ok();
+    throwIfInterrupted();
+    return ros::ok();
   };
   try {
-    Points map = about(task.shares_from, [&] {
+    return about(task.shares_from, [&] {
       return task.start ? sphereMap(task.surface, task.shares, *task.start, options)
                         : sphereMap(task.surface, task.shares, options);
     });
-    throwIfInterrupted();
-    return map;
   } catch (const mesh::NoMap&) {
-    throwIfInterrupted();
     refuseWithoutMap(asked.mesh);
   }
 }

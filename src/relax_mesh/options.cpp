@@ -91,6 +91,15 @@ void requireWritable(const Options& options) {
   if (!options.metrics.empty()) requireOrFail("--metrics", options.metrics);
 }
 
+/// Not left over after the options, as a name of a file that has no quotes around its blanks.
+void requireNamed(const po::parsed_options& parsed) {
+  for (const po::option& option : parsed.options) {
+    if (option.position_key < 0) continue;
+    throw std::invalid_argument("unexpected argument " + core::quoted(option.value.front()) +
+                                "; see relax_mesh --help");
+  }
+}
+
 [[noreturn]] void refuse(const po::error& fault) {
   throw std::invalid_argument(std::string(fault.what()) + "; see relax_mesh --help");
 }
@@ -102,7 +111,9 @@ std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
   const po::options_description all = described(options);
   po::variables_map values;
   try {
-    po::store(po::command_line_parser(arguments).options(all).positional({}).run(), values);
+    const po::parsed_options parsed = po::command_line_parser(arguments).options(all).run();
+    requireNamed(parsed);
+    po::store(parsed, values);
     if (arguments.empty() || values.count("help") > 0) {
       std::cout << all;
       return std::nullopt;

@@ -116,21 +116,29 @@ class ShowProgress {
   ros::AsyncSpinner spinner_{1};
 };
 
+/// `name`: resolved.
+std::string howToStart(const std::string& name) {
+  const auto slash = name.rfind('/');
+  const std::string space = slash == 0 ? "" : "ROS_NAMESPACE=" + name.substr(0, slash) + " ";
+  return "; start one: " + space +
+         "roslaunch spherical_springs spherical_springs.launch running:=false name:=" +
+         name.substr(slash + 1);
+}
+
 }  // namespace
 
 SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(name)) {
-  constexpr auto kRemedy =
-      "; start one: roslaunch spherical_springs spherical_springs.launch running:=false";
+  const std::string remedy = howToStart(name_);
   // Without a master every other call of ROS would wait for one, for ever.
   if (!ros::master::check()) {
-    throw std::runtime_error("no ROS master answers at " + ros::master::getURI() + kRemedy);
+    throw std::runtime_error("no ROS master answers at " + ros::master::getURI() + remedy);
   }
   ros::start();
   const auto deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
   while (!ros::service::exists(name_ + "/relax", false)) {
     throwIfInterrupted();
     if (ros::WallTime::now() > deadline) {
-      throw std::runtime_error("no node " + name_ + " answers" + kRemedy);
+      throw std::runtime_error("no node " + name_ + " answers" + remedy);
     }
     ros::WallDuration(0.02).sleep();
   }

@@ -3,6 +3,7 @@
 import csv
 import os
 import re
+import unittest
 
 import numpy as np
 import rospkg
@@ -18,13 +19,11 @@ def data(name):
     return os.path.join(rospkg.RosPack().get_path(PACKAGE), '..', 'shared', 'data', name)
 
 
+@unittest.skipUnless(os.path.isdir(data('')), 'there is no ' + data(''))
 class TestData(MeshTest):
     """Of a head and a cow, where they are."""
 
     def assert_spread(self, most, name, start=None):
-        for needed in filter(None, (name, start)):
-            if not os.path.exists(data(needed)):
-                self.skipTest('there is no %s here' % data(needed))
         options = {'sphere': data(start)} if start else {}
         outcome = self.run_to_success(mesh=data(name), **options)
         vertices, faces = mesh.read_obj(data(name))
@@ -210,7 +209,8 @@ class TestRefusals(MeshTest):
                 ({'colour\n' + 200 * 'x': 'red'}, r"option '--colour\?x{91}\.\.\.'; see"),
                 ({'angle_weight': 'a\nlot'}, r"--angle-weight is 'a\?lot'; allowed: 0 to"),
                 ({'node': 'no\nname'}, r'\[no\?name\]'),
-                ({'node': 'nobody'}, 'no node /nobody answers')):
+                ({'node': 'nobody'}, 'no node /nobody answers; .* running:=false name:=nobody$'),
+                ({'node': '/a/b/c'}, '; start one: ROS_NAMESPACE=/a/b roslaunch .* name:=c$')):
             with self.subTest(options=options):
                 self.assertRegex(self.refusal(**{'mesh': surface, **options}), pattern)
 

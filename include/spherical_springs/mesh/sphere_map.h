@@ -25,8 +25,9 @@ struct MapOptions {
   double tolerance = 1e-3;
   double max_time = 20;  ///< wall [s]; the best map so far comes out when it is over
   int threads = 1;       ///< results do not depend on it, to the last bit, unless time runs out
-  /// Called after every iteration with the share of the way that is done, from 0 to 1; returning
-  /// false ends it with the best map so far.
+  /// Called after every iteration with the share of the time that is over, from 0 to 1; returning
+  /// false once ends it with the best map so far, or with the first where there is none yet. What
+  /// it throws comes out.
   std::function<bool(double fraction)> go_on = [](double) { return true; };
 };
 
