@@ -110,7 +110,9 @@ double highestFrequency(const System& system, const Points& positions) {
 }
 
 double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions) {
-  return stabilityLimit(method) / highestFrequency(system, positions);
+  const double limit = stabilityLimit(method);
+  // A frequency may be infinite too.
+  return std::isinf(limit) ? limit : limit / highestFrequency(system, positions);
 }
 
 double localError(const std::shared_ptr<const System>& system, IntegrationMethod method,

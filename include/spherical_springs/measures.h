@@ -62,7 +62,7 @@ double maxTorque(const System& system, const State& state);
 double normError(const State& state);
 
 /// A bound of the highest frequency of small vibrations here [rad/s], by Gershgorin's circles of
-/// the Hessian's blocks; 0 where nothing vibrates.
+/// the Hessian's blocks; 0 where nothing vibrates, infinite where a stiffness overflows.
 double highestFrequency(const System& system, const Points& positions);
 
 /// The largest time step [s] that `method` bears here; infinite where nothing bounds it.

@@ -40,6 +40,23 @@ TEST(StableTimeStep, Holds) {
   }
 }
 
+// The stiffness across a triangle overflows where an edge is within 1e-143 of pi.
+TEST(StableTimeStep, IsANumberWhereCurvatureIsInfinite) {
+  SpringLists springs;
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, 1)};
+  springs.get<SolidAngleSpring>()[0].stiffness = 1e30;
+  const Scene scene =
+      testing::sceneOf({testing::particleAt({0.6, 0, 0.8}), testing::particleAt({1, 0, 0}),
+                        testing::particleAt({-1, 1e-143, 0})},
+                       springs);
+  const System system(scene, System::Options());
+  const Points positions = testing::stateOf(scene).positions;
+  ASSERT_TRUE(std::isinf(highestFrequency(system, positions)));
+  EXPECT_EQ(stableTimeStep(system, IntegrationMethod::verlet, positions), 0);
+  const double step = stableTimeStep(system, IntegrationMethod::implicit_euler, positions);
+  EXPECT_TRUE(std::isinf(step)) << step;
+}
+
 /// An icosphere with springs of arcs and triangles, a little out of shape.
 Scene mesh() {
   const auto sphere = benchmark_scenes::icosphere(1);
