@@ -1,6 +1,7 @@
 #include "evaluation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "../parallel.h"
@@ -108,7 +109,9 @@ double Evaluation::maxTorqueIn(const Patch& patch) const {
   for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
     if (system_.pinned(layout_->order()[patch.first_place + i])) continue;
     const Eigen::Map<const Vector3> position(positions[i].values), force(forces[i].values);
-    largest = std::max(largest, position.cross(force).norm());
+    const Vector3 torque = position.cross(force);
+    const double size = torque.norm();  // infinite where its square overflows
+    largest = std::max(largest, std::isfinite(size) ? size : torque.stableNorm());
   }
   return largest;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "relaxation_scenes.h"
@@ -84,6 +85,20 @@ TEST(Evaluation, OfTheLargestTorqueIsThatOfOneSpringAtATime) {
       EXPECT_NEAR(Evaluation(system, positions, *kernels).maxTorque(), expected, 1e-12 * expected);
     }
   }
+}
+
+// An edge within 1e-143 of pi: the torque is finite, and its square is not.
+TEST(Evaluation, OfTheLargestTorqueIsFiniteWhereItsSquareOverflows) {
+  SpringLists springs;
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, 1)};
+  springs.get<SolidAngleSpring>()[0].stiffness = 1e30;
+  const Scene scene =
+      testing::sceneOf({testing::particleAt({0.6, 0, 0.8}), testing::particleAt({1, 0, 0}),
+                        testing::particleAt({-1, 1e-143, 0})},
+                       springs);
+  const double torque = maxTorque(System(scene, System::Options()), testing::stateOf(scene));
+  EXPECT_GT(torque, 1e160);
+  EXPECT_TRUE(std::isfinite(torque)) << torque;
 }
 
 TEST(Evaluation, LeavesTorquesOnPinsOut) {
