@@ -81,7 +81,8 @@ bool coversOnce(const mesh::Distortion& d) {
   return d.folded == 0 && std::abs(d.total_area - 4 * core::kPi) < 1e-6;
 }
 
-/// Whether they are so by more than 1e-6 rad: nearer to it, plain formulas of areas lose digits.
+/// Whether every edge is shorter than pi by 1e-6 rad: nearer to it plain formulas of areas lose
+/// digits.
 bool edgesBelowPi(const mesh::Faces& faces, const Points& map) {
   for (Eigen::Index f = 0; f < faces.cols(); ++f) {
     for (int k = 0; k < 3; ++k) {

@@ -91,8 +91,8 @@ void requireWritable(const Options& options) {
   if (!options.metrics.empty()) requireOrFail("--metrics", options.metrics);
 }
 
-/// Not left over after the options, as a name of a file that has no quotes around its blanks.
-void requireNamed(const po::parsed_options& parsed) {
+/// Every argument belongs to an option; half of a file's name without quotes does not.
+void requireOptionsOnly(const po::parsed_options& parsed) {
   for (const po::option& option : parsed.options) {
     if (option.position_key < 0) continue;
     throw std::invalid_argument("unexpected argument " + core::quoted(option.value.front()) +
@@ -112,7 +112,7 @@ std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
   po::variables_map values;
   try {
     const po::parsed_options parsed = po::command_line_parser(arguments).options(all).run();
-    requireNamed(parsed);
+    requireOptionsOnly(parsed);
     po::store(parsed, values);
     if (arguments.empty() || values.count("help") > 0) {
       std::cout << all;

@@ -241,6 +241,19 @@ TEST(SphereMap, EndsWithAMapWhenItIsCancelled) {
   EXPECT_LT(calls, 100);
 }
 
+// Shares that differ this much need many iterations before the first map.
+TEST(SphereMap, AsksWhetherToGoOnWhileThereIsNoMap) {
+  const TriangleMesh mesh = testing::bumps(1, 8);
+  Eigen::VectorXd areas = faceAreas(mesh);
+  for (Eigen::Index f = 1; f < areas.size(); f += 2) areas[f] *= 1e-9;
+  MapOptions options;
+  options.max_time = 0;
+  int calls = 0;
+  options.go_on = [&](double) { return ++calls > 0; };
+  sphereMap(mesh, faceShares(areas), options);
+  EXPECT_GT(calls, 100);
+}
+
 TEST(SphereMap, EndsWithoutAMapWhereGoOnThrows) {
   const TriangleMesh mesh = testing::star(4, 2, false, 5);
   MapOptions options;
