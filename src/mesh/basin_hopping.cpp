@@ -1,5 +1,6 @@
 #include "basin_hopping.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,17 +10,32 @@
 namespace spherical_springs::mesh {
 namespace {
 
-/// With noise in the middle of a patch.
-Eigen::VectorXd shaken(const Patch& patch, std::uint32_t seed) {
-  constexpr std::int32_t kMiddle = 40;  // vertices
-  constexpr double kNoise = 0.6;        // of logarithms
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, kNoise);
-  Eigen::VectorXd shares = patch.shares;
-  for (Eigen::Index f = 0; f < shares.size(); ++f) {
-    if (patch.faces.col(f).maxCoeff() < kMiddle) shares[f] *= std::exp(normal(random));
+/// Of the faces round each vertex.
+Eigen::ArrayXd meanShares(const Patch& patch) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(patch.vertices.size()));
+  Eigen::ArrayXd count = sum;
+  for (Eigen::Index c = 0; c < patch.faces.size(); ++c) {
+    sum[patch.faces(c)] += patch.shares[c / 3];
+    ++count[patch.faces(c)];
   }
-  return shares;
+  return sum / count;
+}
+
+/// With some vertices of the middle moved by several sizes of the faces round them.
+Points scattered(const Patch& patch, Points points, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform;
+  const auto logUniform = [&](double least, double most) {
+    return least * std::pow(most / least, uniform(random));
+  };
+  const auto count = static_cast<std::int32_t>(logUniform(3, 41));
+  const double distance = logUniform(2, 8);  // in roots of a share
+  const Eigen::ArrayXd sizes = meanShares(patch).sqrt();
+  std::normal_distribution<double> normal;
+  for (std::int32_t n = 0; n < std::min(count, patch.free); ++n) {
+    for (double& coordinate : points.col(n)) coordinate += distance * sizes[n] * normal(random);
+    points.col(n).normalize();
+  }
+  return points;
 }
 
 }  // namespace
@@ -33,74 +49,79 @@ BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, st
       cutter_(faces, shares, vertices) {}
 
 /// One a face.
-Eigen::VectorXd BasinHopping::energies(const Faces& faces, const Eigen::VectorXd& shares,
-                                       const Points& points) const {
-  Eigen::VectorXd result(faces.cols());
-  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const auto corner = [&](int k) { return points.col(faces(k, f)); };
-    result[f] = FaceEnergy{shares[f], 1, shape_}.value({corner(0), corner(1), corner(2)});
+Eigen::VectorXd BasinHopping::energies(const Points& map) const {
+  Eigen::VectorXd result(faces_.cols());
+  for (Eigen::Index f = 0; f < faces_.cols(); ++f) {
+    const auto corner = [&](int k) { return map.col(faces_(k, f)); };
+    result[f] = FaceEnergy{shares_[f], 1, shape_}.value({corner(0), corner(1), corner(2)});
   }
   return result;
 }
 
-/// Where descent leads from `points`.
-Points BasinHopping::descended(const Patch& patch, const Eigen::VectorXd& shares,
-                               const Points& points, double slow) const {
-  constexpr int kMostSteps = 200;
-  MapEnergy energy(patch.faces, shares, points, patch.free, 1);
-  energy.setShape(shape_);
-  int steps = 0;
-  MapDescent(energy, 1).run(FaceHessian::exact, slow, [&] { return steps++ < kMostSteps; });
-  return energy.points();
-}
-
-Points BasinHopping::hopped(const Patch& patch, const Points& points, std::uint32_t seed) const {
-  constexpr double kSlowAway = 1e-2, kSlowBack = 1e-4;  // drops in one step that end it
-  const Points away = descended(patch, shaken(patch, seed), points, kSlowAway);
-  return descended(patch, patch.shares, away, kSlowBack);
-}
-
-/// Each try is on a patch about a face that is drawn by its energy, or where that is in one of the
-/// patches before, or next to it, on the last of those.
-std::vector<Patch> BasinHopping::drawPatches(std::size_t size, const Points& map,
-                                             std::vector<Try>& tries) {
-  const Eigen::VectorXd weights = energies(faces_, shares_, map);
-  std::discrete_distribution<Eigen::Index> by_energy(weights.begin(), weights.end());
-  std::vector<Patch> patches;
-  cutter_.begin();
-  for (Try& one : tries) {
-    Patch patch = cutter_.cut(by_energy(random_), size);
-    if (patch.free > 0) patches.push_back(std::move(patch));
-    one.patch = patches.size() - 1;
-    one.seed = static_cast<std::uint32_t>(random_());
-  }
-  return patches;
-}
-
 double BasinHopping::hop(Points& map) {
-  const double before = energies(faces_, shares_, map).sum();
-  for (const std::size_t size : {400, 800}) hop(size, map);
-  return 1 - energies(faces_, shares_, map).sum() / before;
+  const double before = energies(map).sum();
+  for (const std::size_t size : {400, 1200}) hop(size, map);
+  return 1 - energies(map).sum() / before;
 }
 
 void BasinHopping::hop(std::size_t size, Points& map) {
-  std::vector<Try> tries(4);
-  const std::vector<Patch> patches = drawPatches(size, map, tries);
-  core::forOnThreads(static_cast<std::ptrdiff_t>(tries.size()), threads_, [&](std::ptrdiff_t t) {
-    const Patch& patch = patches[tries[t].patch];
-    tries[t].points = hopped(patch, patch.of(map), tries[t].seed);
+  const std::vector<Hop> hops = drawHops(size, map);
+  std::vector<Points> landings(hops.size());
+  core::forOnThreads(static_cast<std::ptrdiff_t>(hops.size()), threads_, [&](std::ptrdiff_t h) {
+    landings[h] = landing(hops[h], hops[h].patch.of(map));
   });
-  std::vector<double> lowest;
-  for (const Patch& patch : patches) {
-    lowest.push_back(energies(patch.faces, patch.shares, patch.of(map)).sum());
+  for (std::size_t h = 0; h < hops.size(); ++h) hops[h].patch.putInto(map, landings[h]);
+}
+
+/// About faces that are drawn by the squares of their energies.
+std::vector<BasinHopping::Hop> BasinHopping::drawHops(std::size_t size, const Points& map) {
+  constexpr std::size_t kMost = 8;
+  constexpr int kDraws = 20;  // some of which fall on patches that are there
+  const Eigen::ArrayXd weights = energies(map).array().square();
+  std::discrete_distribution<Eigen::Index> draw(weights.begin(), weights.end());
+  std::vector<Hop> hops;
+  cutter_.begin();
+  for (int drawn = 0; drawn < kDraws && hops.size() < kMost; ++drawn) {
+    Patch patch = cutter_.cut(draw(random_), size);
+    if (patch.free == 0) continue;
+    hops.push_back({std::move(patch), static_cast<std::uint32_t>(random_())});
   }
-  for (const Try& one : tries) {
-    const Patch& patch = patches[one.patch];
-    const double energy = energies(patch.faces, patch.shares, one.points).sum();
-    if (!(energy < lowest[one.patch])) continue;
-    lowest[one.patch] = energy;
-    patch.putInto(map, one.points);
+  return hops;
+}
+
+/// Of the first of a few tries that ends lower than `points`, or these.
+Points BasinHopping::landing(const Hop& hop, const Points& points) const {
+  constexpr int kTries = 4;
+  const Patch& patch = hop.patch;
+  MapEnergy energy(patch.faces, patch.shares, points, patch.free, 1);
+  energy.setShape(shape_);
+  const double before = energy.valueHere();
+  std::mt19937 random(hop.seed);
+  for (int tried = 0; tried < kTries; ++tried) {
+    if (lowered(energy, scattered(patch, points, random), before)) return energy.points();
   }
+  return points;
+}
+
+/// Descends from some points, as long as that may end lower than `before`.
+/// @return whether it does.
+bool BasinHopping::lowered(MapEnergy& energy, const Points& from, double before) const {
+  constexpr double kHopeless = 1.5;  // of the energy before
+  MapDescent descent(energy, 1);
+  const auto descend = [&](FaceHessian hessian, double slow, int most_steps) {
+    descent.run(hessian, slow, [&] { return most_steps-- > 0; });
+    return energy.valueHere();
+  };
+  energy.place(from);
+  energy.setCost(AreaCost::square);
+  energy.setShape(0);
+  if (!std::isfinite(energy.valueHere())) return false;  // turned inside out
+  if (descend(FaceHessian::gauss_newton, 3e-2, 40) > kHopeless * before) return false;
+  if (descend(FaceHessian::exact, 1e-4, 200) > before) return false;
+  energy.setCost(AreaCost::barrier);
+  energy.setShape(shape_);
+  if (!std::isfinite(energy.valueHere())) return false;  // folds are left
+  return descend(FaceHessian::exact, 1e-4, 50) < before;
 }
 
 }  // namespace spherical_springs::mesh

@@ -5,13 +5,16 @@
 #include <random>
 #include <vector>
 
+#include "map_energy.h"
 #include "patch.h"
 
 namespace spherical_springs::mesh {
 
 /// Basin hopping (Wales and Doye, J. Phys. Chem. A 101, 1997) on patches of a map about faces whose
-/// areas are wrong: vertices go after shares with noise, then after the true ones, and stay where
-/// the energy is lower. What is left of an energy is mostly the matter of a few hundred vertices.
+/// areas are wrong. Vertices in the middle are scattered, whatever folds; the patch descends first
+/// the squares of the errors of its signed areas, which let folds go, and then the energy, and
+/// stays where that is lower. What is left of an energy is mostly the matter of a few hundred
+/// vertices.
 class BasinHopping {
  public:
   /// Of a closed mesh, with the weight of the shape of its faces in their energy; what is passed
@@ -25,19 +28,16 @@ class BasinHopping {
   double hop(Points& map);
 
  private:
-  struct Try {
-    std::size_t patch;
-    std::uint32_t seed;  // of the noise
-    Points points;       // of the patch after it
+  struct Hop {
+    Patch patch;
+    std::uint32_t seed;  // of what is scattered
   };
 
   void hop(std::size_t size, Points& map);
-  Eigen::VectorXd energies(const Faces& faces, const Eigen::VectorXd& shares,
-                           const Points& points) const;
-  Points hopped(const Patch& patch, const Points& points, std::uint32_t seed) const;
-  Points descended(const Patch& patch, const Eigen::VectorXd& shares, const Points& points,
-                   double slow) const;
-  std::vector<Patch> drawPatches(std::size_t size, const Points& map, std::vector<Try>& tries);
+  std::vector<Hop> drawHops(std::size_t size, const Points& map);
+  Points landing(const Hop& hop, const Points& points) const;
+  bool lowered(MapEnergy& energy, const Points& from, double before) const;
+  Eigen::VectorXd energies(const Points& map) const;
 
   const Faces& faces_;
   const Eigen::VectorXd& shares_;

@@ -11,25 +11,28 @@ namespace spherical_springs::mesh {
 namespace {
 
 /// A function of the area and of the corners' distances with its derivatives.
-struct Barrier {
+struct Cost {
   double value, slope, bend;
 };
 
-/// (r + 1/r - 2) / 2 of r = area / share, by the area.
-Barrier areaBarrier(double area, double share) {
+/// By the area.
+Cost areaCost(AreaCost cost, double area, double share) {
   const double r = area / share;
+  if (cost == AreaCost::square) {
+    return {0.5 * (r - 1) * (r - 1), (r - 1) / share, 1 / (share * share)};
+  }
   return {0.5 * (r - 1) * (r - 1) / r, 0.5 * (1 - 1 / (r * r)) / share,
           1 / (r * r * r) / (share * share)};
 }
 
 /// tan^2(area / 4), by the area.
-Barrier halfSphereBarrier(double area) {
+Cost halfSphereCost(double area) {
   const double t = std::tan(area / 4), t2 = t * t;
   return {t2, 0.5 * t * (1 + t2), (1 + t2) * (1 + 3 * t2) / 8};
 }
 
 /// tan^2(edge / 2) / sqrt 3, by the cosine of the edge.
-Barrier edgeBarrier(const Vector3& a, const Vector3& b) {
+Cost edgeCost(const Vector3& a, const Vector3& b) {
   const double scale = 1 / std::sqrt(3.);
   const double sum = 0.5 * (a + b).squaredNorm();  // 1 + cosine
   return {scale * 0.5 * (a - b).squaredNorm() / sum, -2 * scale / (sum * sum),
@@ -48,31 +51,33 @@ void makeDefinite(Matrix6& matrix) {
 
 }  // namespace
 
-double FaceEnergy::value(const Corners& corners) const {
+double FaceEnergy::value(const Corners& corners, double area) const {
   const auto& [a, b, c] = corners;
-  if (!surelyPositive(a, b, c)) return std::numeric_limits<double>::infinity();
-  const double area = core::solidAngle(a, b, c);
-  double sum = areaBarrier(area, share).value;
+  if (cost == AreaCost::barrier && !surelyPositive(a, b, c)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double sum = areaCost(cost, area, share).value;
   if (shape > 0) {
     sum += shape / share *
-           (halfSphereBarrier(area).value + edgeBarrier(a, b).value + edgeBarrier(b, c).value +
-            edgeBarrier(c, a).value);
+           (halfSphereCost(area).value + edgeCost(a, b).value + edgeCost(b, c).value +
+            edgeCost(c, a).value);
   }
   return weight * sum;
 }
 
 FaceEnergy::Terms FaceEnergy::terms(const Corners& corners, const Frames& frames,
                                     FaceHessian hessian) const {
-  const auto area =
-      core::tangentCondition(core::SolidAngleSpring(), corners, frames, core::Curvature::exact);
-  Barrier of_area = areaBarrier(area.value, share);
+  const auto curvature =
+      hessian == FaceHessian::gauss_newton ? core::Curvature::definite : core::Curvature::exact;
+  const auto area = core::tangentCondition(core::SolidAngleSpring(), corners, frames, curvature);
+  Cost of_area = areaCost(cost, area.value, share);
   if (shape > 0) {
-    const Barrier half_sphere = halfSphereBarrier(area.value);
+    const Cost half_sphere = halfSphereCost(area.value);
     of_area.value += shape / share * half_sphere.value;
     of_area.slope += shape / share * half_sphere.slope;
     of_area.bend += shape / share * half_sphere.bend;
   }
-  const double area_slope = hessian == FaceHessian::gauss_newton ? 0 : weight * of_area.slope;
+  const double area_slope = weight * of_area.slope;
   Terms terms;
   terms.value = weight * of_area.value;
   Vector6 area_gradient;
@@ -93,7 +98,7 @@ void FaceEnergy::addEdges(const Corners& corners, const Frames& frames, Terms& t
   const double scale = weight * shape / share;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const Barrier of_edge = edgeBarrier(corners[i], corners[j]);
+    const Cost of_edge = edgeCost(corners[i], corners[j]);
     const Eigen::Vector2d g_i = frames[i].transpose() * corners[j];
     const Eigen::Vector2d g_j = frames[j].transpose() * corners[i];
     const double slope = scale * of_edge.slope, bend = scale * of_edge.bend;

@@ -13,10 +13,13 @@ namespace spherical_springs::mesh {
 /// right.
 enum class FaceHessian { exact, definite, gauss_newton };
 
-/// With r = area / share,
-///   weight ((r + 1/r - 2) / 2
-///     + shape (tan^2(area / 4) + sum over edges of tan^2(edge / 2) / sqrt 3) / share),
-/// which is infinite at a fold, at a face of half of the sphere and at an edge of length pi.
+/// What the area of a face costs, with r = area / share: (r + 1/r - 2) / 2, which is infinite at a
+/// fold; or (r - 1)^2 / 2 of the signed area, which is not.
+enum class AreaCost { barrier, square };
+
+/// weight (cost of the area
+///   + shape (tan^2(area / 4) + sum over edges of tan^2(edge / 2) / sqrt 3) / share),
+/// infinite at a face of half of the sphere and at an edge of length pi, if there is a shape.
 struct FaceEnergy {
   using Corners = std::array<Vector3, 3>;
   using Frames = std::array<core::TangentFrame, 3>;
@@ -27,9 +30,13 @@ struct FaceEnergy {
   };
 
   double share, weight, shape;
+  AreaCost cost = AreaCost::barrier;
 
-  /// Infinite where the corners are not clearly in the positive sense.
-  double value(const Corners& corners) const;
+  /// With the barrier infinite where the corners are not clearly in the positive sense.
+  double value(const Corners& corners) const {
+    return value(corners, core::solidAngle(corners[0], corners[1], corners[2]));
+  }
+  double value(const Corners& corners, double area) const;  ///< the same, of a known area
 
   /// Value and derivatives by coordinates in the tangent frames of the corners.
   Terms terms(const Corners& corners, const Frames& frames, FaceHessian hessian) const;

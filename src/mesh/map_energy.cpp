@@ -138,9 +138,11 @@ double MapEnergy::valueAfter(const Eigen::VectorXd& step) const { return valueAt
 void MapEnergy::move(const Eigen::VectorXd& step) { put(moved(step)); }
 
 double MapEnergy::valueAt(const std::vector<Vector3>& points) const {
-  if (!(std::abs(areas(points).sum() - area_) < 1)) return kInfinity;
+  const Eigen::ArrayXd areas = this->areas(points);
+  if (!(std::abs(areas.sum() - area_) < 1)) return kInfinity;
   return core::parallelSum(faceCount(), threads_, [&](std::ptrdiff_t f) {
-    return faceEnergy(f).value({points[faces_(0, f)], points[faces_(1, f)], points[faces_(2, f)]});
+    return faceEnergy(f).value({points[faces_(0, f)], points[faces_(1, f)], points[faces_(2, f)]},
+                               areas[f]);
   });
 }
 

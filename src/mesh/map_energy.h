@@ -14,9 +14,10 @@ namespace spherical_springs::mesh {
 /// its share, so that tiny faces do not rule before the large ones are about right.
 enum class FaceWeights { equal, root_of_share };
 
-/// The sum over the faces of their `FaceEnergy`; infinite where they do not cover the sphere once,
-/// or a part of it as they did. Unknown 2 n and 2 n + 1 are coordinates in a tangent frame of the
-/// n-th vertex that moves, in an order of its own.
+/// The sum over the faces of their `FaceEnergy`; infinite where their areas do not sum to those of
+/// the sphere, or of the part of it that they had, as where they cover it twice. Unknown 2 n and
+/// 2 n + 1 are coordinates in a tangent frame of the n-th vertex that moves, in an order of its
+/// own.
 class MapEnergy {
  public:
   using Hessian = core::Blocks<double, 2>;
@@ -33,6 +34,7 @@ class MapEnergy {
   Eigen::Index faceCount() const { return faces_.cols(); }
 
   void setShape(double shape) { shape_ = shape; }
+  void setCost(AreaCost cost) { cost_ = cost; }
   void setWeights(FaceWeights weights);
 
   /// Puts vertices somewhere; `evaluate` is to follow.
@@ -66,7 +68,9 @@ class MapEnergy {
  private:
   Eigen::ArrayXd areas(const std::vector<Vector3>& points) const;
   double valueAt(const std::vector<Vector3>& points) const;
-  FaceEnergy faceEnergy(Eigen::Index face) const { return {shares_[face], weights_[face], shape_}; }
+  FaceEnergy faceEnergy(Eigen::Index face) const {
+    return {shares_[face], weights_[face], shape_, cost_};
+  }
   FaceEnergy::Corners corners(Eigen::Index face) const;
   FaceEnergy::Terms terms(Eigen::Index face, FaceHessian hessian) const;
   Eigen::Vector2d ownStep(std::size_t n) const;
@@ -79,6 +83,7 @@ class MapEnergy {
   std::int32_t free_;
   double area_ = 0;  // of all faces together
   double shape_ = 0;
+  AreaCost cost_ = AreaCost::barrier;
   std::vector<std::uint32_t> vertices_;  // of the mesh, by number here
   Faces faces_;                          // of numbers
   Eigen::VectorXd shares_, weights_, mass_;

@@ -126,7 +126,7 @@ TEST(BasinHopping, LeavesMinimaOfNewtonsMethod) {
     left *= 1 - fall;
   }
   EXPECT_TRUE(coversOnce(stuck.mesh.faces, map));
-  EXPECT_LT(left, 0.8);
+  EXPECT_LT(left, 0.3);
   EXPECT_NEAR(valueOf(stuck, map), left * stuck.value, 1e-9 * stuck.value);
 }
 

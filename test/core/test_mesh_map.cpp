@@ -40,10 +40,7 @@ Points shaken(const TriangleMesh& mesh, double share) {
   return points;
 }
 
-TEST(MapEnergy, DerivativesAgreeWithDifferences) {
-  const TriangleMesh mesh = testing::bumps(1, 1);
-  MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 0.05), 1);
-  energy.setShape(0.3);
+void expectDerivativesAgreeWithDifferences(MapEnergy& energy) {
   energy.evaluate(FaceHessian::exact);
   const Eigen::VectorXd gradient = energy.gradient();
   const auto hessian = energy.hessian();
@@ -69,6 +66,45 @@ TEST(MapEnergy, DerivativesAgreeWithDifferences) {
       }
     }
   }
+}
+
+TEST(MapEnergy, DerivativesAgreeWithDifferences) {
+  const TriangleMesh mesh = testing::bumps(1, 1);
+  MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 0.05), 1);
+  energy.setShape(0.3);
+  expectDerivativesAgreeWithDifferences(energy);
+}
+
+TEST(MapEnergy, OfSquaresHasDerivativesAtFoldsToo) {
+  const TriangleMesh mesh = testing::bumps(1, 1);
+  MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 0.6), 1);
+  EXPECT_EQ(energy.valueHere(), std::numeric_limits<double>::infinity());
+  energy.setCost(AreaCost::square);
+  expectDerivativesAgreeWithDifferences(energy);
+}
+
+/// Where areas are wrong it leaves their second derivatives out.
+TEST(MapEnergy, OfGaussAndNewtonIsTheHessianWhereAreasAreRight) {
+  const TriangleMesh mesh = testing::bumps(1, 1);
+  const Points points = shaken(mesh, 0.05);
+  const auto differenceOfHessians = [&](const Eigen::VectorXd& shares) {
+    MapEnergy energy(mesh.faces, shares, points, 1);
+    energy.evaluate(FaceHessian::exact);
+    const MapEnergy::Hessian exact = energy.hessian();
+    energy.evaluate(FaceHessian::gauss_newton);
+    double largest = 0;
+    for (std::size_t e = 0; e < exact.size(); ++e) {
+      largest = std::max(largest, (exact[e] - energy.hessian()[e]).norm() / exact[e].norm());
+    }
+    return largest;
+  };
+  Eigen::VectorXd areas(mesh.faces.cols());
+  for (Eigen::Index f = 0; f < areas.size(); ++f) {
+    areas[f] = core::solidAngle(points.col(mesh.faces(0, f)), points.col(mesh.faces(1, f)),
+                                points.col(mesh.faces(2, f)));
+  }
+  EXPECT_LT(differenceOfHessians(areas), 1e-12);
+  EXPECT_GT(differenceOfHessians(sharesOf(mesh)), 1e-2);
 }
 
 TEST(MapEnergy, SweepsLowerItToWhereNoVertexCanAlone) {
@@ -111,6 +147,8 @@ TEST(MapEnergy, IsInfiniteAtAFold) {
   EXPECT_LT(energy.valueAfter(step), 1e6);
   step[20] = 1;
   EXPECT_EQ(energy.valueAfter(step), std::numeric_limits<double>::infinity());
+  energy.setCost(AreaCost::square);
+  EXPECT_LT(energy.valueAfter(step), 1e6);
 }
 
 /// Of which the bottom is nearly half of the sphere.
