@@ -32,7 +32,9 @@ class TestRViz(unittest.TestCase):
     def assert_shows(self, window, expected, name):
         """Wait for the sphere, and on it colours by name at some points; save the picture."""
         def missing(picture):
-            if not picture.is_drawn or not picture.has_sphere():
+            if not picture.is_drawn:
+                return 'the view'
+            if not picture.has_sphere():
                 return 'the sphere'
             return [(point, colour, picture.colour_at(point)) for point, colour in expected
                     if name_of(picture.colour_at(point)) != colour]
