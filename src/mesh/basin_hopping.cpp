@@ -60,7 +60,7 @@ Eigen::VectorXd BasinHopping::energies(const Points& map) const {
 
 double BasinHopping::hop(Points& map) {
   const double before = energies(map).sum();
-  for (const std::size_t size : {400, 1200}) hop(size, map);
+  for (const std::size_t size : {150, 600}) hop(size, map);
   return 1 - energies(map).sum() / before;
 }
 
