@@ -82,7 +82,7 @@ double length(const Mesh& mesh, const std::array<std::uint32_t, 2>& edge) {
 void displace(double deviation, Random& random, Parts& parts) {
   for (Particle& particle : parts.particles) {
     Eigen::Vector2d step;
-    for (double& component : step) component = deviation * random.normal();
+    for (int k = 0; k < 2; ++k) step[k] = deviation * random.normal();
     particle.position = rotated(particle.position, tangentFrame(particle.position) * step);
   }
 }

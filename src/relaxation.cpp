@@ -41,7 +41,7 @@ Points displaced(const System& system, Points positions, double share, unsigned 
   const Eigen::VectorXd longest = reach(system, positions);
   for (Eigen::Index i = 0; i < positions.cols(); ++i) {
     Eigen::Vector2d step;
-    for (double& component : step) component = generator() / (0.5 * std::mt19937::max()) - 1;
+    for (int k = 0; k < 2; ++k) step[k] = generator() / (0.5 * std::mt19937::max()) - 1;
     if (system.pinned(i)) continue;
     const Vector3 p = positions.col(i);
     positions.col(i) = rotated(p, share * longest[i] * (tangentFrame(p) * step));

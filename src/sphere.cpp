@@ -26,7 +26,8 @@ namespace {
 double squaredNormExcess(const Vector3& p) {
   double sum = -1;
   double error = 0;
-  for (const double component : p) {
+  for (int k = 0; k < 3; ++k) {
+    const double component = p[k];
     const double square = component * component;
     error += std::fma(component, component, -square);
     const double next = sum + square;

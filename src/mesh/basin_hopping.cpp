@@ -32,7 +32,7 @@ Points scattered(const Patch& patch, Points points, std::mt19937& random) {
   const Eigen::ArrayXd sizes = meanShares(patch).sqrt();
   std::normal_distribution<double> normal;
   for (std::int32_t n = 0; n < std::min(count, patch.free); ++n) {
-    for (double& coordinate : points.col(n)) coordinate += distance * sizes[n] * normal(random);
+    for (int k = 0; k < 3; ++k) points(k, n) += distance * sizes[n] * normal(random);
     points.col(n).normalize();
   }
   return points;
@@ -78,7 +78,7 @@ std::vector<BasinHopping::Hop> BasinHopping::drawHops(std::size_t size, const Po
   constexpr std::size_t kMost = 8;
   constexpr int kDraws = 20;  // some of which fall on patches that are there
   const Eigen::ArrayXd weights = energies(map).array().square();
-  std::discrete_distribution<Eigen::Index> draw(weights.begin(), weights.end());
+  std::discrete_distribution<Eigen::Index> draw(weights.data(), weights.data() + weights.size());
   std::vector<Hop> hops;
   cutter_.begin();
   for (int drawn = 0; drawn < kDraws && hops.size() < kMost; ++drawn) {

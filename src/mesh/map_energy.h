@@ -41,8 +41,7 @@ class MapEnergy {
   void place(const Points& points);
   Points points() const;  ///< in the order of the mesh
 
-  /// The energy that vertices would have after a step along their tangent planes; infinite where
-  /// faces would not cover the sphere once.
+  /// The energy that vertices would have after a step along their tangent planes.
   double valueAfter(const Eigen::VectorXd& step) const;
   void move(const Eigen::VectorXd& step);
   double valueHere() const { return valueAt(points_); }  ///< without `evaluate`

@@ -46,7 +46,7 @@ Patch PatchCutter::cut(Eigen::Index face, std::size_t size) {
   const auto addFree = [&](std::int32_t vertex) {
     if (!taken_[vertex]) add(vertex);
   };
-  for (const std::int32_t corner : faces_.col(face)) addFree(corner);
+  for (int k = 0; k < 3; ++k) addFree(faces_(k, face));
   for (std::size_t n = 0; n < patch.vertices.size() && patch.vertices.size() < size; ++n) {
     forEachNeighbour(patch.vertices[n], [&](auto h) { addFree(half_edges_.target(h)); });
   }

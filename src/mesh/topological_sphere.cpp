@@ -32,7 +32,8 @@ void requireFaces(const TriangleMesh& mesh) {
   }
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
     const auto face = mesh.faces.col(f);
-    for (const std::int32_t v : face) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t v = face[k];
       if (v < 0 || v >= count) {
         refuse("face " + std::to_string(f) + " has vertex " + std::to_string(v) +
                "; allowed: 0 to " + std::to_string(count - 1));

@@ -238,7 +238,9 @@ bool Newton::leaveSaddle() {
   }
   std::mt19937 generator(1);
   Eigen::VectorXd probe(energy_.gradient().size());
-  for (double& component : probe) component = generator() / (0.5 * std::mt19937::max()) - 1;
+  for (Eigen::Index i = 0; i < probe.size(); ++i) {
+    probe[i] = generator() / (0.5 * std::mt19937::max()) - 1;
+  }
   ModelMinimum found = minimum(probe, kProbeTolerance);
   if (found.indefinite && model_ == Model::exact) {
     model_ = Model::indefinite;

@@ -35,7 +35,7 @@ void writeMetrics(std::ostream& out, const Eigen::VectorXd& shares, const FaceDi
       << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (Eigen::Index f = 0; f < shares.size(); ++f) {
     out << f << ',' << shares[f] << ',' << faces.areas[f] << ',' << faces.log_area_ratios[f];
-    for (const double change : faces.angle_changes.col(f)) out << ',' << change;
+    for (int k = 0; k < 3; ++k) out << ',' << faces.angle_changes(k, f);
     out << '\n';
   }
 }

@@ -38,7 +38,8 @@ bool begins(const std::string& line, char word, const char*& rest) {
 
 Vector3 parseVertex(std::size_t line, const char* text) {
   Vector3 vertex;
-  for (double& coordinate : vertex) {
+  for (int k = 0; k < 3; ++k) {
+    double& coordinate = vertex[k];
     char* end;
     coordinate = std::strtod(text, &end);
     if (end == text || (*end != '\0' && !isBlank(*end)) || !std::isfinite(coordinate)) {

@@ -25,13 +25,15 @@ class Chart {
   Eigen::Vector3i corners(const Eigen::Vector3i& face) {
     Eigen::Vector3i result = face;
     double easternmost = 0;
-    for (const int vertex : face) {
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = face[k];
       if (!isPole(sphere_.col(vertex))) {
         easternmost = std::max(easternmost, places_[vertex].x());
       }
     }
     // No edge spans more than half a turn.
-    for (int& corner : result) {
+    for (int k = 0; k < 3; ++k) {
+      int& corner = result[k];
       if (!isPole(sphere_.col(corner)) && places_[corner].x() < easternmost - 0.5) {
         corner = raised(corner);
       }

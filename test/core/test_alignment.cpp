@@ -29,7 +29,9 @@ void addChain(std::uint32_t first, std::uint32_t last, SpringLists& springs) {
 System systemOf(const Points& points, const SpringLists& springs,
                 const std::vector<std::uint32_t>& pins = {}) {
   std::vector<Particle> particles;
-  for (const auto& point : points.colwise()) particles.push_back(testing::particleAt(point));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    particles.push_back(testing::particleAt(points.col(i)));
+  }
   return System(testing::pinnedScene(testing::sceneOf(particles, springs), pins), {});
 }
 

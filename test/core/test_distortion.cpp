@@ -38,7 +38,7 @@ struct Sample {
       map.col(i) = (map.col(i) + Vector3(noise(), noise(), noise())).normalized();
       surface.vertices.col(i) *= 3 + noise();
     }
-    for (double& share : shares) share = 1 + noise();
+    for (Eigen::Index f = 0; f < shares.size(); ++f) shares[f] = 1 + noise();
     shares *= 4 * core::kPi / shares.sum();
   }
   Vector3 corner(const Points& places, Eigen::Index face, int i) const {
@@ -66,14 +66,16 @@ TEST(Distortion, IsSummedUpAsItsNamesSay) {
   const FaceDistortion faces = faceDistortion(s.surface, s.shares, s.map);
   double sum = 0, sum_of_squares = 0, magnitudes = 0, worst = 0, angles = 0, worst_angle = 0;
   const auto count = static_cast<double>(faces.areas.size());
-  for (const double ratio : faces.log_area_ratios) {
+  for (Eigen::Index f = 0; f < faces.log_area_ratios.size(); ++f) {
+    const double ratio = faces.log_area_ratios[f];
     sum += ratio;
     sum_of_squares += ratio * ratio;
     magnitudes += std::abs(ratio);
     worst = std::max(worst, std::abs(ratio));
   }
-  for (const auto& face : faces.angle_changes.colwise()) {
-    for (const double change : face) {
+  for (Eigen::Index f = 0; f < faces.angle_changes.cols(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const double change = faces.angle_changes(k, f);
       angles += std::abs(change);
       worst_angle = std::max(worst_angle, std::abs(change));
     }

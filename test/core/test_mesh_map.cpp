@@ -223,7 +223,7 @@ TEST(SphereMap, OfFewFacesWithSharesOverNineDecades) {
     const TriangleMesh mesh =
         trial % 3 == 0 ? testing::tetrahedron() : testing::bumps(trial % 3 - 1, 1);
     Eigen::VectorXd areas(mesh.faces.cols());
-    for (double& area : areas) area = std::pow(10, random.between(-9, 0));
+    for (Eigen::Index f = 0; f < areas.size(); ++f) areas[f] = std::pow(10, random.between(-9, 0));
     const Eigen::VectorXd shares = faceShares(areas);
     if (shares.maxCoeff() > 0.4 * 4 * core::kPi) continue;
     Points points;

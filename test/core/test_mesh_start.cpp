@@ -61,7 +61,9 @@ TEST(FoldFreeStart, BearsSharesOfEveryMagnitude) {
   testing::Random random(5);
   const TriangleMesh mesh = testing::bumps(4, 2);
   Eigen::VectorXd weights(mesh.faces.cols());
-  for (double& weight : weights) weight = std::pow(10, random.between(-12, 0));
+  for (Eigen::Index f = 0; f < weights.size(); ++f) {
+    weights[f] = std::pow(10, random.between(-12, 0));
+  }
   const FoldFreeStart start = startOf(mesh, faceShares(weights));
   EXPECT_TRUE(coversOnce(start.faces, start.points));
 }
@@ -74,8 +76,9 @@ TEST(FoldFreeStart, OfATetrahedronHasTheSharesAsAreas) {
   const Eigen::Matrix3d corners = start.points.middleCols(1, 3);
   const Eigen::Vector3d inner = corners.inverse() * start.points.col(0);
   std::multiset<int> parts;
-  for (const double part : inner)
-    parts.insert(static_cast<int>(std::lround(6 * part / inner.sum())));
+  for (Eigen::Index i = 0; i < inner.size(); ++i) {
+    parts.insert(static_cast<int>(std::lround(6 * inner[i] / inner.sum())));
+  }
   EXPECT_EQ(parts, (std::multiset<int>{1, 2, 3}));
 }
 

@@ -39,7 +39,7 @@ struct Case {
 VectorOf<double> randomVector(std::size_t size) {
   testing::Random random(3);
   VectorOf<double> result(size);
-  for (double& component : result) component = random.between(-1, 1);
+  for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = random.between(-1, 1);
   return result;
 }
 

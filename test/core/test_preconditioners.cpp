@@ -42,7 +42,7 @@ struct Matrix {
 Eigen::VectorXd randomVector(Eigen::Index size, unsigned seed) {
   testing::Random random(seed);
   Eigen::VectorXd result(size);
-  for (double& component : result) component = random.between(-1, 1);
+  for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = random.between(-1, 1);
   return result;
 }
 
