@@ -8,7 +8,7 @@
 
 #include "meshes.h"
 #include "scenes.h"
-#include "spherical_springs/mesh/triangle_mesh.h"
+#include "spherical_springs/mesh/sphere_map.h"
 
 namespace spherical_springs::mesh::testing {
 
@@ -221,6 +221,18 @@ inline std::vector<Shape> fiftyShapes() {
                    },
                    0, 40, 80));
   return shapes;
+}
+
+inline Eigen::VectorXd sharesOf(const TriangleMesh& mesh) { return faceShares(faceAreas(mesh)); }
+
+/// Directions of vertices of a mesh that is seen whole from its centre, shaken.
+inline Points shaken(const TriangleMesh& mesh, double share) {
+  Random random(3);
+  Points points = mesh.vertices.colwise().normalized();
+  for (Eigen::Index v = 0; v < points.cols(); ++v) {
+    points.col(v) = (points.col(v) + share * random.unitVector()).normalized();
+  }
+  return points;
 }
 
 }  // namespace spherical_springs::mesh::testing
