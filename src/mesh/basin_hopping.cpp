@@ -38,6 +38,53 @@ Points scattered(const Patch& patch, Points points, std::mt19937& random) {
   return points;
 }
 
+/// Descents of the energy of a patch.
+class Relaxation {
+ public:
+  Relaxation(const Patch& patch, const Points& points, double shape)
+      : energy_(patch.faces, patch.shares, points, patch.free, 1),
+        descent_(energy_, 1),
+        shape_(shape) {}
+
+  double value() const { return energy_.valueHere(); }
+  Points points() const { return energy_.points(); }
+
+  /// @return the energy where the descent from there ends; infinity where faces fold.
+  double settle(const Points& from, double slow) {
+    begin(from, AreaCost::barrier, shape_);
+    return std::isfinite(value()) ? descend(FaceHessian::exact, slow, 50) : value();
+  }
+
+  /// @return whether it ends lower than `before` by way of the squares, wherever faces fold.
+  bool unfolds(const Points& from, double before) {
+    constexpr double kHopeless = 1.2;  // of the energy before
+    begin(from, AreaCost::square, 0);
+    return std::isfinite(value()) &&  // not turned inside out
+           descend(FaceHessian::gauss_newton, 3e-2, 40) < kHopeless * before &&
+           descend(FaceHessian::exact, kSlow, 200) < before && settle(points(), kSlow) < before;
+  }
+
+ private:
+  static constexpr double kSlow = 1e-4;  // drop of the energy in one step that ends a descent
+
+  void begin(const Points& from, AreaCost cost, double shape) {
+    descent_.restart();
+    energy_.place(from);
+    energy_.setCost(cost);
+    energy_.setShape(shape);
+  }
+
+  /// @return the energy where it ends.
+  double descend(FaceHessian hessian, double slow, int most_steps) {
+    descent_.run(hessian, slow, [&] { return most_steps-- > 0; });
+    return value();
+  }
+
+  MapEnergy energy_;
+  MapDescent descent_;
+  double shape_;
+};
+
 }  // namespace
 
 BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
@@ -60,68 +107,45 @@ Eigen::VectorXd BasinHopping::energies(const Points& map) const {
 
 double BasinHopping::hop(Points& map) {
   const double before = energies(map).sum();
-  for (const std::size_t size : {150, 600}) hop(size, map);
-  return 1 - energies(map).sum() / before;
-}
-
-void BasinHopping::hop(std::size_t size, Points& map) {
-  const std::vector<Hop> hops = drawHops(size, map);
+  const std::vector<Hop> hops = drawHops(map);
   std::vector<Points> landings(hops.size());
   core::forOnThreads(static_cast<std::ptrdiff_t>(hops.size()), threads_, [&](std::ptrdiff_t h) {
     landings[h] = landing(hops[h], hops[h].patch.of(map));
   });
   for (std::size_t h = 0; h < hops.size(); ++h) hops[h].patch.putInto(map, landings[h]);
+  return 1 - energies(map).sum() / before;
 }
 
 /// About faces that are drawn by the squares of their energies.
-std::vector<BasinHopping::Hop> BasinHopping::drawHops(std::size_t size, const Points& map) {
-  constexpr std::size_t kMost = 8;
+std::vector<BasinHopping::Hop> BasinHopping::drawHops(const Points& map) {
+  constexpr std::size_t kMost = 8, kSize = 300;
   constexpr int kDraws = 20;  // some of which fall on patches that are there
   const Eigen::ArrayXd weights = energies(map).array().square();
   std::discrete_distribution<Eigen::Index> draw(weights.data(), weights.data() + weights.size());
   std::vector<Hop> hops;
   cutter_.begin();
   for (int drawn = 0; drawn < kDraws && hops.size() < kMost; ++drawn) {
-    Patch patch = cutter_.cut(draw(random_), size);
+    Patch patch = cutter_.cut(draw(random_), kSize);
     if (patch.free == 0) continue;
     hops.push_back({std::move(patch), static_cast<std::uint32_t>(random_())});
   }
   return hops;
 }
 
-/// Of the first of a few tries that ends lower than `points`, or these.
+/// The lowest of some tries in turn, each scattered from the lowest before it.
 Points BasinHopping::landing(const Hop& hop, const Points& points) const {
-  constexpr int kTries = 4;
-  const Patch& patch = hop.patch;
-  MapEnergy energy(patch.faces, patch.shares, points, patch.free, 1);
-  energy.setShape(shape_);
-  const double before = energy.valueHere();
+  constexpr int kTries = 8;
+  constexpr double kSlow = 1e-2;  // more steps are lost where a hop goes elsewhere
+  Relaxation relaxation(hop.patch, points, shape_);
+  double least = relaxation.settle(points, kSlow);
+  Points lowest = relaxation.points();
   std::mt19937 random(hop.seed);
   for (int tried = 0; tried < kTries; ++tried) {
-    if (lowered(energy, scattered(patch, points, random), before)) return energy.points();
+    if (!relaxation.unfolds(scattered(hop.patch, lowest, random), least)) continue;
+    lowest = relaxation.points();
+    least = relaxation.value();
   }
-  return points;
-}
-
-/// Descends from some points, as long as that may end lower than `before`.
-/// @return whether it does.
-bool BasinHopping::lowered(MapEnergy& energy, const Points& from, double before) const {
-  constexpr double kHopeless = 1.5;  // of the energy before
-  MapDescent descent(energy, 1);
-  const auto descend = [&](FaceHessian hessian, double slow, int most_steps) {
-    descent.run(hessian, slow, [&] { return most_steps-- > 0; });
-    return energy.valueHere();
-  };
-  energy.place(from);
-  energy.setCost(AreaCost::square);
-  energy.setShape(0);
-  if (!std::isfinite(energy.valueHere())) return false;  // turned inside out
-  if (descend(FaceHessian::gauss_newton, 3e-2, 40) > kHopeless * before) return false;
-  if (descend(FaceHessian::exact, 1e-4, 200) > before) return false;
-  energy.setCost(AreaCost::barrier);
-  energy.setShape(shape_);
-  if (!std::isfinite(energy.valueHere())) return false;  // folds are left
-  return descend(FaceHessian::exact, 1e-4, 50) < before;
+  return lowest;
 }
 
 }  // namespace spherical_springs::mesh

@@ -13,8 +13,8 @@ namespace spherical_springs::mesh {
 /// Basin hopping (Wales and Doye, J. Phys. Chem. A 101, 1997) on patches of a map about faces whose
 /// areas are wrong. Vertices in the middle are scattered, whatever folds; the patch descends first
 /// the squares of the errors of its signed areas, which let folds go, and then the energy, and
-/// stays where that is lower. What is left of an energy is mostly the matter of a few hundred
-/// vertices.
+/// stays where that is lower, to be scattered from there. What is left of an energy is mostly the
+/// matter of a few hundred vertices.
 class BasinHopping {
  public:
   /// Of a closed mesh, with the weight of the shape of its faces in their energy; what is passed
@@ -22,8 +22,7 @@ class BasinHopping {
   BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
                double shape, int threads);
 
-  /// Makes a round of hops, of small patches and of larger ones, from a map that covers the sphere
-  /// once.
+  /// Makes a round of hops of several patches from a map that covers the sphere once.
   /// @return the share by which the energy has fallen.
   double hop(Points& map);
 
@@ -33,10 +32,8 @@ class BasinHopping {
     std::uint32_t seed;  // of what is scattered
   };
 
-  void hop(std::size_t size, Points& map);
-  std::vector<Hop> drawHops(std::size_t size, const Points& map);
+  std::vector<Hop> drawHops(const Points& map);
   Points landing(const Hop& hop, const Points& points) const;
-  bool lowered(MapEnergy& energy, const Points& from, double before) const;
   Eigen::VectorXd energies(const Points& map) const;
 
   const Faces& faces_;

@@ -12,6 +12,9 @@ class MapDescent {
   /// `energy` must live longer.
   MapDescent(MapEnergy& energy, int threads);
 
+  /// Begins anew, wherever vertices are now.
+  void restart() { shift_ = kFirstShift; }
+
   /// @return whether a step has lowered the energy.
   bool iterate(FaceHessian hessian);
 
@@ -35,6 +38,8 @@ class MapDescent {
   }
 
  private:
+  static constexpr double kFirstShift = 1e-2;
+
   /// @return whether the shifted Hessian was definite.
   bool solve();
   double expectedDrop(double length) const;
@@ -44,7 +49,7 @@ class MapDescent {
   core::MultifrontalCholesky inverse_;
   MapEnergy::Hessian shifted_;
   Eigen::VectorXd step_;
-  double shift_ = 1e-2;
+  double shift_ = kFirstShift;
   bool held_short_ = false;  // the last step, which the next will not be as much
   double drop_ = 0;          // of the energy in the last step, as a share
 };
