@@ -29,10 +29,10 @@ using mesh::FaceDistortion;
 /// Of angle springs beside solid-angle springs: these alone leave some freedom.
 constexpr double kWeakest = 1e-5;
 
-/// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 85 for 50,000.
+/// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 80 for 50,000.
 struct Times {
   explicit Times(Eigen::Index vertices)
-      : map(std::max(16., 1.6e-3 * vertices)), relaxation(std::max(1., 0.1e-3 * vertices)) {}
+      : map(std::max(16., 1.5e-3 * vertices)), relaxation(std::max(1., 0.1e-3 * vertices)) {}
   double map, relaxation;
 };
 
