@@ -39,9 +39,9 @@ Points scattered(const Patch& patch, Points points, std::mt19937& random) {
 }
 
 /// Descents of the energy of a patch.
-class Relaxation {
+class PatchDescent {
  public:
-  Relaxation(const Patch& patch, const Points& points, double shape)
+  PatchDescent(const Patch& patch, const Points& points, double shape)
       : energy_(patch.faces, patch.shares, points, patch.free, 1),
         descent_(energy_, 1),
         shape_(shape) {}
@@ -135,15 +135,15 @@ std::vector<BasinHopping::Hop> BasinHopping::drawHops(const Points& map) {
 /// The lowest of some tries in turn, each scattered from the lowest before it.
 Points BasinHopping::landing(const Hop& hop, const Points& points) const {
   constexpr int kTries = 8;
-  constexpr double kSlow = 1e-2;  // more steps are lost where a hop goes elsewhere
-  Relaxation relaxation(hop.patch, points, shape_);
-  double least = relaxation.settle(points, kSlow);
-  Points lowest = relaxation.points();
+  constexpr double kRough = 1e-2;  // more steps are lost where a hop goes elsewhere
+  PatchDescent descent(hop.patch, points, shape_);
+  double least = descent.settle(points, kRough);
+  Points lowest = descent.points();
   std::mt19937 random(hop.seed);
   for (int tried = 0; tried < kTries; ++tried) {
-    if (!relaxation.unfolds(scattered(hop.patch, lowest, random), least)) continue;
-    lowest = relaxation.points();
-    least = relaxation.value();
+    if (!descent.unfolds(scattered(hop.patch, lowest, random), least)) continue;
+    lowest = descent.points();
+    least = descent.value();
   }
   return lowest;
 }
