@@ -18,7 +18,14 @@ BlockedSplitting::BlockedSplitting(const std::shared_ptr<const System>& system,
     : scheme_(schemeFor(*system, scheme, time_step)),
       time_step_(time_step),
       depends_on_rates_(scheme.order > 2 && system->damping().hasDampers()),
-      motion_(system, system->layout(), kernels) {}
+      motion_(system, system->layout(), kernels) {
+  prepare(scheme_);
+  if (depends_on_rates_) prepare(splittingScheme(IntegrationMethod::verlet));
+}
+
+void BlockedSplitting::prepare(const SplittingScheme& scheme) {
+  for (const double kick : scheme.kick) motion_.prepareKick(kick * time_step_);
+}
 
 void BlockedSplitting::take(const State& state) {
   motion_.take(state);

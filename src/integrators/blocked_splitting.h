@@ -7,7 +7,8 @@
 
 namespace spherical_springs::core {
 
-/// A splitting scheme block by block, several springs at a time.
+/// A splitting scheme block by block, several springs at a time. All memory is taken when it is
+/// made, so that no step can fail.
 class BlockedSplitting : public Integrator {
  public:
   BlockedSplitting(const std::shared_ptr<const System>& system, const SplittingScheme& scheme,
@@ -17,6 +18,7 @@ class BlockedSplitting : public Integrator {
   void give(State& state) const override;
 
  private:
+  void prepare(const SplittingScheme& scheme);
   void advanceByRates(std::uint64_t steps);
   void stepOnce(const SplittingScheme& scheme, double next_drift);
 

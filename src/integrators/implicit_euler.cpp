@@ -17,7 +17,6 @@ void ImplicitEuler::stepOnce(State& state) {
   damp(state);
   const Points targets = inertialPositions(state);
   if (!minimise(state.positions, targets)) ++state.unconverged_steps;
-  state.positions = newton_->positions();
   takeVelocities(targets, state);
   boundEnergy(before - state.dissipated, state);
   countStep(time_step_, state);
@@ -40,8 +39,20 @@ Points ImplicitEuler::inertialPositions(const State& state) const {
   return targets;
 }
 
-/// Leaves the energy at its minimum; false where that is not reached.
-bool ImplicitEuler::minimise(const Points& positions, const Points& targets) {
+/// Moves the positions to the minimum of the energy, or as near as they come.
+/// @return whether the minimum was reached.
+bool ImplicitEuler::minimise(Points& positions, const Points& targets) {
+  try {
+    const bool reached = descend(positions, targets);
+    positions = newton_->positions();
+    return reached;
+  } catch (...) {
+    newton_.reset();  // left in the middle of an iteration
+    throw;
+  }
+}
+
+bool ImplicitEuler::descend(const Points& positions, const Points& targets) {
   constexpr int kMostIterations = 100;
   constexpr double kTolerance = 1e-10, kRoundingTolerance = 1e-6;  // of the torque at the start
   if (!newton_) newton_ = std::make_unique<Newton>(*system_, positions, inertia_);

@@ -18,7 +18,8 @@ class ImplicitEuler : public PlainIntegrator {
   void stepOnce(State& state) override;
   void damp(State& state);
   Points inertialPositions(const State& state) const;
-  bool minimise(const Points& positions, const Points& targets);
+  bool minimise(Points& positions, const Points& targets);
+  bool descend(const Points& positions, const Points& targets);
   void takeVelocities(const Points& targets, State& state) const;
   void boundEnergy(double most, State& state) const;
 

@@ -7,9 +7,24 @@
 
 #include "../parallel.h"
 #include "exact_springs.h"
-#include "forces.h"
 
 namespace spherical_springs::core {
+
+namespace {
+
+/// The largest number of places for dampers of one kind in a patch.
+std::uint32_t mostDampers(const DamperLayout& dampers) {
+  std::uint32_t most = 0;
+  for (const auto& share : dampers.shares()) {
+    forEachKind([&](auto kind) {
+      const GroupRange& range = share.template get<typename decltype(kind)::type>().groups;
+      most = std::max(most, range.end - range.begin);
+    });
+  }
+  return most * static_cast<std::uint32_t>(kGroup);
+}
+
+}  // namespace
 
 DampedKick::DampedKick(const System& system, const Layout& layout, const DampingKernels& kernels,
                        int threads)
@@ -25,7 +40,8 @@ DampedKick::DampedKick(const System& system, const Layout& layout, const Damping
       last_(layout.rowCount(), Row{}),
       next_(last_),
       rates_(layout.patches().size(), 0),
-      dissipated_(layout.patches().size(), 0) {
+      dissipated_(layout.patches().size(), 0),
+      scratches_(layout, mostDampers(dampers_), threads) {
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     gradients_.get<Spring>().resize(dampers_.groups().get<Spring>().size());
@@ -63,8 +79,8 @@ void takeExactly(const Dampers& group, std::uint32_t lane, const Row* positions,
 
 void DampedKick::takeGradients(std::size_t patch, const Row* positions) {
   const Patch& here = layout_.patches()[patch];
-  Scratch& scratch = Scratch::cleared(layout_, here);
-  double* const bounds = scratch.sums[0].values;
+  const auto scratch = scratches_.lease(here);
+  double* const bounds = scratch->sums[0].values;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     const auto [begin, end] = dampers_.shares()[patch].get<Spring>().groups;
@@ -72,12 +88,11 @@ void DampedKick::takeGradients(std::size_t patch, const Row* positions) {
     const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
     const auto* const groups = dampers_.groups().get<Spring>().data() + begin;
     auto* const gradients = gradients_.get<Spring>().data() + begin;
-    scratch.makeRoom(kGroup * (end - begin));
     const std::uint32_t hard_count =
-        kernels.gradients(groups, end - begin, positions->values, gradients, scratch.hard.data());
+        kernels.gradients(groups, end - begin, positions->values, gradients, scratch->hard.data());
     for (std::uint32_t h = 0; h < hard_count; ++h) {
-      const std::uint32_t group = scratch.hard[h] / kGroup;
-      takeExactly(groups[group], scratch.hard[h] % kGroup, positions, gradients[group]);
+      const std::uint32_t group = scratch->hard[h] / kGroup;
+      takeExactly(groups[group], scratch->hard[h] % kGroup, positions, gradients[group]);
     }
     kernels.add_bounds(groups, gradients, end - begin, own_, bounds);
   });
@@ -85,7 +100,7 @@ void DampedKick::takeGradients(std::size_t patch, const Row* positions) {
   for (std::uint32_t i = 0; i < here.particle_count; ++i) {
     const std::uint32_t particle = layout_.order()[here.first_place + i];
     const double viscous = viscous_[here.first_slot + i] * system_.inverseMasses()[particle];
-    fastest = std::max(fastest, viscous + scratch.sums[i].values[0]);
+    fastest = std::max(fastest, viscous + scratch->sums[i].values[0]);
   }
   rates_[patch] = fastest;
 }
@@ -96,6 +111,12 @@ void DampedKick::takeTorques(std::size_t patch, const Particles& particles) {
 }
 
 double DampedKick::fastestRate() const { return *std::max_element(rates_.begin(), rates_.end()); }
+
+void DampedKick::prepare(double duration) {
+  sweep_.makeRoom();
+  const Damping& damping = system_.damping();
+  if (damping.hasViscous()) viscous_flows_.prepare(duration / 4, damping, layout_);
+}
 
 double DampedKick::kick(double duration, const Velocities& velocities) {
   const double decays = fastestRate() * std::abs(duration);
@@ -138,9 +159,9 @@ double DampedKick::addTerm(std::size_t patch, const SeriesTerm& term,
                            const Velocities& velocities) {
   const Patch& here = layout_.patches()[patch];
   layout_.welcomeGuests(here, last_);
-  Scratch& scratch = Scratch::cleared(layout_, here);
+  const auto scratch = scratches_.lease(here);
   const double* const last = last_[here.first_row].values;
-  double* const rates = scratch.sums[0].values;
+  double* const rates = scratch->sums[0].values;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     const auto [begin, end] = dampers_.shares()[patch].get<Spring>().groups;
@@ -164,10 +185,8 @@ double DampedKick::addTerm(std::size_t patch, const SeriesTerm& term,
 // matter.
 double DampedKick::kickBySweeps(double duration, const Velocities& velocities) {
   const double quarter = duration / 4;
-  const Damping& damping = system_.damping();
   const ViscousFlow* const viscous =
-      damping.hasViscous() ? &viscous_flows_.over(quarter, damping, layout_) : nullptr;
-  sweep_.makeRoom();
+      system_.damping().hasViscous() ? &viscous_flows_.over(quarter) : nullptr;
   double taken = sumOverPatches([&](std::size_t patch) {
     sweep_.takeFlows(patch, quarter);
     return sweepThere(patch, viscous);

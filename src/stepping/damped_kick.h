@@ -10,6 +10,7 @@
 #include "damper_layout.h"
 #include "damper_sweep.h"
 #include "layout.h"
+#include "scratch.h"
 #include "spherical_springs/system.h"
 #include "viscous_flows.h"
 
@@ -36,7 +37,10 @@ class DampedKick {
   /// As `Damping::fastestRate` [1/s], at the gradients taken.
   double fastestRate() const;
 
-  /// As `Damping::kick` under what was taken of all patches. Where the damping is fast dampers act
+  /// Takes the memory that kicks over `duration` [s] need, so that none of them can fail.
+  void prepare(double duration);
+
+  /// For a duration that has been prepared, as `Damping::kick` under what was taken of all patches. Where the damping is fast dampers act
   /// in another order, which that of the springs in the scene does not change.
   double kick(double duration, const Velocities& velocities);
 
@@ -68,6 +72,7 @@ class DampedKick {
   std::vector<Row> last_, next_;    // velocities or terms of their series
   std::vector<double> rates_;       // the fastest of each patch
   std::vector<double> dissipated_;  // of each patch
+  ScratchPool scratches_;
 };
 
 }  // namespace spherical_springs::core

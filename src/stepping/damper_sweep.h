@@ -18,7 +18,7 @@ class DamperSweep {
               const DampingKernels& kernels, bool own)
       : dampers_(dampers), gradients_(gradients), kernels_(kernels), own_(own) {}
 
-  /// To be called before flows are taken, with nothing else under way.
+  /// Takes the memory for all flows; to be called before flows are taken.
   void makeRoom();
 
   /// Takes the flows of a patch's dampers over `duration` [s] at the present gradients.

@@ -14,7 +14,8 @@ Evaluation::Evaluation(const System& system, const Points& positions, const Step
     : system_(system),
       layout_(system.layout()),
       kernels_(kernels),
-      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}) {
+      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}),
+      scratches_(*layout_, mostElements(*layout_), threads()) {
   forEachPatch([&](std::size_t, const Patch& patch) {
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
       Eigen::Map<Vector3>(positions_[patch.first_row + i].values) =
@@ -24,11 +25,12 @@ Evaluation::Evaluation(const System& system, const Points& positions, const Step
   forEachPatch([&](std::size_t, const Patch& patch) { layout_->welcomeGuests(patch, positions_); });
 }
 
+int Evaluation::threads() const { return layout_->patches().size() > 1 ? system_.threads() : 1; }
+
 template <class Work>
 void Evaluation::forEachPatch(const Work& work) const {
   const auto& patches = layout_->patches();
-  const int threads = patches.size() > 1 ? system_.threads() : 1;
-  forOnThreads(patches.size(), threads, [&](std::ptrdiff_t p) {
+  forOnThreads(patches.size(), threads(), [&](std::ptrdiff_t p) {
     if (patches[p].particle_count > 0) work(p, patches[p]);
   });
 }
@@ -48,11 +50,12 @@ PotentialEnergies Evaluation::potential() const {
 
 PotentialEnergies Evaluation::potentialOf(const Patch& patch) const {
   PotentialEnergies energies;
-  addEnergies<0>(patch, energies);
-  addEnergies<1>(patch, energies);
-  addEnergies<2>(patch, energies);
-  addEnergies<3>(patch, energies);
-  addEnergies<4>(patch, energies);
+  const auto scratch = scratches_.lease(patch);
+  addEnergies<0>(patch, *scratch, energies);
+  addEnergies<1>(patch, *scratch, energies);
+  addEnergies<2>(patch, *scratch, energies);
+  addEnergies<3>(patch, *scratch, energies);
+  addEnergies<4>(patch, *scratch, energies);
   return energies;
 }
 
@@ -73,13 +76,12 @@ double& firstOf(const OrientedArcs&, PotentialEnergies& energies) {
 
 // A spring counts in the patch of the first end of its element.
 template <int kSort>
-void Evaluation::addEnergies(const Patch& patch, PotentialEnergies& energies) const {
+void Evaluation::addEnergies(const Patch& patch, Scratch& scratch,
+                             PotentialEnergies& energies) const {
   const auto [begin, end] = patch.groups[kSort];
   if (begin == end) return;
   const auto* const groups = std::get<kSort>(layout_->groups()).data() + begin;
   const Row* const positions = &positions_[patch.first_row];
-  Scratch& scratch = Scratch::ofThisThread();
-  scratch.makeRoom(kGroup * (end - begin));
   ElementEnergies added = {0, 0};
   const std::uint32_t hard_count = std::get<kSort>(kernels_.energies)(
       groups, end - begin, positions->values, kRowLength * patch.slotCount(), added,
@@ -98,22 +100,45 @@ void Evaluation::addEnergies(const Patch& patch, PotentialEnergies& energies) co
 
 double Evaluation::maxTorque() const {
   std::vector<double> of_patches(layout_->patches().size(), 0);
-  forEachPatch([&](std::size_t p, const Patch& patch) { of_patches[p] = maxTorqueIn(patch); });
+  forEachPatch([&](std::size_t p, const Patch& patch) {
+    forEachTorque(patch, [&](std::uint32_t, double torque) {
+      of_patches[p] = std::max(of_patches[p], torque);
+    });
+  });
   return *std::max_element(of_patches.begin(), of_patches.end());
 }
 
-double Evaluation::maxTorqueIn(const Patch& patch) const {
+Evaluation::LargestTorque Evaluation::largestTorque(const Eigen::VectorXd& allowed) const {
+  std::vector<LargestTorque> of_patches(layout_->patches().size());
+  forEachPatch([&](std::size_t p, const Patch& patch) {
+    LargestTorque& largest = of_patches[p];
+    forEachTorque(patch, [&](std::uint32_t particle, double torque) {
+      largest.torque = std::max(largest.torque, torque);
+      if (torque > 0) largest.excess = std::max(largest.excess, torque / allowed[particle]);
+    });
+  });
+  LargestTorque largest;
+  for (const LargestTorque& of_patch : of_patches) {
+    largest.torque = std::max(largest.torque, of_patch.torque);
+    largest.excess = std::max(largest.excess, of_patch.excess);
+  }
+  return largest;
+}
+
+/// Calls `visit(particle, torque [N m])` for each particle of a patch that is not pinned.
+template <class Visit>
+void Evaluation::forEachTorque(const Patch& patch, const Visit& visit) const {
   const Row* const positions = &positions_[patch.first_row];
-  const Row* const forces = Forces(*layout_, kernels_).on(patch, positions);
-  double largest = 0;
+  const auto scratch = scratches_.lease(patch);
+  const Row* const forces = Forces(*layout_, kernels_).on(patch, positions, *scratch);
   for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
-    if (system_.pinned(layout_->order()[patch.first_place + i])) continue;
+    const std::uint32_t particle = layout_->order()[patch.first_place + i];
+    if (system_.pinned(particle)) continue;
     const Eigen::Map<const Vector3> position(positions[i].values), force(forces[i].values);
     const Vector3 torque = position.cross(force);
     const double size = torque.norm();  // infinite where its square overflows
-    largest = std::max(largest, std::isfinite(size) ? size : torque.stableNorm());
+    visit(particle, std::isfinite(size) ? size : torque.stableNorm());
   }
-  return largest;
 }
 
 }  // namespace spherical_springs::core

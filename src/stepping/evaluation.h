@@ -6,6 +6,7 @@
 
 #include "../kernels/step_kernels.h"
 #include "layout.h"
+#include "scratch.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
@@ -22,18 +23,29 @@ class Evaluation {
   /// Largest torque of the springs on a particle that is not pinned [N m].
   double maxTorque() const;
 
+  struct LargestTorque {
+    double torque = 0;  ///< [N m]
+    double excess = 0;  ///< as a multiple of what is allowed; of another particle, maybe
+  };
+
+  /// `allowed`: [N m], one a particle in the order of ids.
+  LargestTorque largestTorque(const Eigen::VectorXd& allowed) const;
+
  private:
+  int threads() const;
   template <class Work>
   void forEachPatch(const Work& work) const;
   PotentialEnergies potentialOf(const Patch& patch) const;
   template <int kSort>
-  void addEnergies(const Patch& patch, PotentialEnergies& energies) const;
-  double maxTorqueIn(const Patch& patch) const;
+  void addEnergies(const Patch& patch, Scratch& scratch, PotentialEnergies& energies) const;
+  template <class Visit>
+  void forEachTorque(const Patch& patch, const Visit& visit) const;
 
   const System& system_;
   const std::shared_ptr<const Layout> layout_;
   const StepKernels& kernels_;
   std::vector<Row> positions_;
+  mutable ScratchPool scratches_;  // for many threads
 };
 
 }  // namespace spherical_springs::core

@@ -1,23 +1,10 @@
 #include "forces.h"
 
-#include <algorithm>
 #include <tuple>
 
 #include "exact_springs.h"
 
 namespace spherical_springs::core {
-
-Scratch& Scratch::ofThisThread() {
-  static thread_local Scratch scratch;
-  return scratch;
-}
-
-Scratch& Scratch::cleared(const Layout& layout, const Patch& patch) {
-  Scratch& scratch = ofThisThread();
-  if (scratch.sums.size() < layout.largestPatch()) scratch.sums.resize(layout.largestPatch());
-  std::fill_n(scratch.sums.begin(), patch.row_count, Row{});
-  return scratch;
-}
 
 namespace {
 
@@ -34,8 +21,7 @@ void addExactly(const Spring& spring, const std::array<std::uint32_t, Spring::kP
 
 }  // namespace
 
-const Row* Forces::on(const Patch& patch, const Row* positions) const {
-  Scratch& scratch = Scratch::cleared(layout_, patch);
+const Row* Forces::on(const Patch& patch, const Row* positions, Scratch& scratch) const {
   addElements<0>(patch, positions, scratch);
   addElements<1>(patch, positions, scratch);
   addElements<2>(patch, positions, scratch);
@@ -49,7 +35,6 @@ void Forces::addElements(const Patch& patch, const Row* positions, Scratch& scra
   const auto [begin, end] = patch.groups[kSort];
   if (begin == end) return;
   const auto* const groups = std::get<kSort>(layout_.groups()).data() + begin;
-  scratch.makeRoom(kGroup * (end - begin));
   const std::uint32_t hard_count = std::get<kSort>(kernels_.forces)(
       groups, end - begin, positions->values, scratch.sums[0].values, scratch.hard.data());
   for (std::uint32_t h = 0; h < hard_count; ++h) {

@@ -13,6 +13,7 @@ Motion::Motion(std::shared_ptr<const System> system, std::shared_ptr<const Layou
       kernels_(kernels),
       forces_(*layout_, kernels),
       threads_(layout_->patches().size() > 1 ? system_->threads() : 1),
+      scratches_(*layout_, mostElements(*layout_), threads_),
       positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}),
       moved_(positions_),
       inverse_masses_(layout_->slotCount(), 0) {
@@ -82,6 +83,14 @@ void Motion::drift(double duration) {
   });
 }
 
+void Motion::prepareKick(double kick) {
+  if (damped_kick_ != nullptr) {
+    damped_kick_->prepare(kick);
+  } else if (system_->damping().hasViscous()) {
+    viscous_flows_.prepare(kick, system_->damping(), *layout_);
+  }
+}
+
 double Motion::kickAndDrift(double kick, const Drifts& drifts) {
   if (damped_kick_ != nullptr) {
     const double taken = kickUnderSpringDamping(kick);
@@ -92,10 +101,10 @@ double Motion::kickAndDrift(double kick, const Drifts& drifts) {
     return taken;
   }
   const bool damped = system_->damping().hasViscous();
-  const ViscousFlow* const viscous =
-      damped ? &viscous_flows_.over(kick, system_->damping(), *layout_) : nullptr;
+  const ViscousFlow* const viscous = damped ? &viscous_flows_.over(kick) : nullptr;
   forEachPatch([&](std::size_t b, const Patch& patch) {
-    const Particles particles = particlesOf(patch, positions_, moved_, forcesOn(patch));
+    const auto scratch = scratches_.lease(patch);
+    const Particles particles = particlesOf(patch, positions_, moved_, forcesOn(patch, *scratch));
     const double taken = kickPatch(particles, patch, kick, viscous);
     if (damped) dissipated_[b] = taken;
     driftPatch(particles, drifts);
@@ -106,10 +115,10 @@ double Motion::kickAndDrift(double kick, const Drifts& drifts) {
   return taken;
 }
 
-const Row* Motion::forcesOn(const Patch& patch) {
+const Row* Motion::forcesOn(const Patch& patch, Scratch& scratch) {
   fetch(patch);
   layout_->welcomeGuests(patch, positions_);
-  return forces_.on(patch, &positions_[patch.first_row]);
+  return forces_.on(patch, &positions_[patch.first_row], scratch);
 }
 
 double Motion::kickPatch(const Particles& particles, const Patch& patch, double kick,
@@ -127,7 +136,8 @@ double Motion::kickPatch(const Particles& particles, const Patch& patch, double 
 
 double Motion::kickUnderSpringDamping(double kick) {
   forEachPatch([&](std::size_t b, const Patch& patch) {
-    damped_kick_->takeTorques(b, particlesOf(patch, positions_, moved_, forcesOn(patch)));
+    const auto scratch = scratches_.lease(patch);
+    damped_kick_->takeTorques(b, particlesOf(patch, positions_, moved_, forcesOn(patch, *scratch)));
     damped_kick_->takeGradients(b, &positions_[patch.first_row]);
   });
   return damped_kick_->kick(kick,

@@ -28,7 +28,10 @@ class Motion {
 
   using Drifts = std::array<double, 2>;  ///< one after the other [s]
 
-  /// Forces at the present positions for `kick` [s], then drifts.
+  /// Takes the memory that kicks over `kick` [s] need, so that none of them can fail.
+  void prepareKick(double kick);
+
+  /// Forces at the present positions for `kick` [s], which has been prepared, then drifts.
   /// @return the energy that damping took out [J].
   double kickAndDrift(double kick, const Drifts& drifts);
 
@@ -40,7 +43,7 @@ class Motion {
                         std::vector<Row>& moved, const Row* forces);
   template <class Work>
   void forEachPatch(const Work& work);
-  const Row* forcesOn(const Patch& patch);
+  const Row* forcesOn(const Patch& patch, Scratch& scratch);
   double kickPatch(const Particles& particles, const Patch& patch, double kick,
                    const ViscousFlow* viscous) const;
   double kickUnderSpringDamping(double kick);
@@ -52,6 +55,7 @@ class Motion {
   const StepKernels& kernels_;
   Forces forces_;
   int threads_;
+  ScratchPool scratches_;
   std::vector<Row> positions_, moved_;
   std::array<std::vector<double>, 3> velocities_;
   std::vector<double> inverse_masses_;

@@ -1,13 +1,13 @@
 #include "viscous_flows.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace spherical_springs::core {
 
-const ViscousFlow& ViscousFlows::over(double duration, const Damping& damping,
-                                      const Layout& layout) {
+void ViscousFlows::prepare(double duration, const Damping& damping, const Layout& layout) {
   for (const ViscousFlow& known : known_) {
-    if (known.duration == duration) return known;
+    if (known.duration == duration) return;
   }
   ViscousFlow made{duration, {}, {}, {}};
   const std::size_t count = layout.slotCount();
@@ -24,7 +24,11 @@ const ViscousFlow& ViscousFlows::over(double duration, const Damping& damping,
     }
   }
   known_.push_back(std::move(made));
-  return known_.back();
+}
+
+const ViscousFlow& ViscousFlows::over(double duration) const {
+  return *std::find_if(known_.begin(), known_.end(),
+                       [&](const ViscousFlow& known) { return known.duration == duration; });
 }
 
 }  // namespace spherical_springs::core

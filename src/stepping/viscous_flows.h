@@ -14,11 +14,13 @@ struct ViscousFlow {
   std::vector<double> decay, gain, taken[3];
 };
 
-/// Those of the few durations that a scheme has.
+/// The flows over the few durations that a scheme has.
 class ViscousFlows {
  public:
-  /// Holds until it is called again.
-  const ViscousFlow& over(double duration, const Damping& damping, const Layout& layout);
+  void prepare(double duration, const Damping& damping, const Layout& layout);
+
+  /// The flow over a duration that has been prepared.
+  const ViscousFlow& over(double duration) const;
 
  private:
   std::vector<ViscousFlow> known_;
