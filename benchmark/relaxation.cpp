@@ -200,7 +200,7 @@ void measureNetwork(const Network& network, const Settings& settings) {
                                     text(ours.result.energy_after, 7)};
   std::vector<std::string> of_ceres = {"-", "-", "-", "-", "-"};
   if (!settings.without_ceres) {
-    const double tolerance = settings.tolerance > 0 ? settings.tolerance : defaultTolerance(system);
+    const double tolerance = settings.tolerance > 0 ? settings.tolerance : 1e-9 * system.largestStiffness();
     const CeresResult ceres = relaxByCeres(system, start, tolerance, settings.max_time);
     const double energy = system.potential(ceres.positions).total();
     of_ceres = {text(energy, 7),

@@ -37,6 +37,8 @@ std::vector<std::uint32_t> groupsOf(const System& system) {
 
 struct Group {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // sum of after before^T
+  std::size_t size = 0;
+  bool moved = false, calm = true;
   Vector3 pin = Vector3::Zero();
   bool fixed = false;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -46,8 +48,10 @@ struct Group {
     fixed = fixed || !crossOfUnits(pin, place).isZero(0);
   }
 
+  bool stays() const { return size == 1 || !moved; }
+
   void findTurn() {
-    if (fixed) return;
+    if (fixed || stays()) return;
     if (!pin.isZero(0)) {
       turnAboutPin();
       return;
@@ -57,6 +61,12 @@ struct Group {
     Eigen::Matrix3d v = svd.matrixV();
     if ((v * svd.matrixU().transpose()).determinant() < 0) v.col(2) *= -1;
     turn = v * svd.matrixU().transpose();
+  }
+
+  Vector3 turned(const Vector3& point) const {
+    if (fixed) return point;
+    const Vector3 p = turn * point;
+    return p * (1.5 - 0.5 * p.squaredNorm());
   }
 
  private:
@@ -70,22 +80,43 @@ struct Group {
   }
 };
 
-}  // namespace
-
-Points aligned(const System& system, const Points& before, Points after) {
-  const auto group_of = groupsOf(system);
+/// Groups by number, with all that finding their turns needs.
+std::vector<Group> groupsAt(const System& system, const std::vector<std::uint32_t>& group_of,
+                            const Points& before, const Points& after,
+                            const std::vector<bool>& calm) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < group_of.size(); ++i) {
     if (group_of[i] >= groups.size()) groups.resize(group_of[i] + 1);
     Group& group = groups[group_of[i]];
     group.covariance += after.col(i) * before.col(i).transpose();
+    ++group.size;
+    group.moved = group.moved || after.col(i) != before.col(i);
+    group.calm = group.calm && !calm.empty() && calm[i];
     if (system.pinned(i)) group.addPin(after.col(i));
   }
+  return groups;
+}
+
+}  // namespace
+
+Points aligned(const System& system, const Points& before, Points after,
+               const std::vector<bool>& calm) {
+  constexpr double kStill = 1e-6;  // [rad]
+  const auto group_of = groupsOf(system);
+  std::vector<Group> groups = groupsAt(system, group_of, before, after, calm);
   for (Group& group : groups) group.findTurn();
   parallelFor(after.cols(), system.threads(), [&](std::ptrdiff_t i) {
-    const Vector3 p = groups[group_of[i]].turn * after.col(i);
-    if (!system.pinned(i)) after.col(i) = p * (1.5 - 0.5 * p.squaredNorm());
+    const Group& group = groups[group_of[i]];
+    if (!group.stays() && !system.pinned(i)) after.col(i) = group.turned(after.col(i));
   });
+  for (std::size_t i = 0; i < group_of.size(); ++i) {
+    Group& group = groups[group_of[i]];
+    group.calm = group.calm && (after.col(i) - before.col(i)).squaredNorm() < kStill * kStill;
+  }
+  for (std::size_t i = 0; i < group_of.size(); ++i) {
+    const Group& group = groups[group_of[i]];
+    if (group.stays() || group.calm) after.col(i) = before.col(i);
+  }
   return after;
 }
 

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <stdexcept>
 
 #include "alignment.h"
@@ -12,6 +11,8 @@
 #include "minimisation/fire.h"
 #include "minimisation/newton.h"
 #include "minimisation/particle_stiffness.h"
+#include "minimisation/torque_limit.h"
+#include "new_starts.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
@@ -19,67 +20,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// For each particle the longest arc to another particle of its springs, or 1 where all are on one
-/// spot [rad].
-Eigen::VectorXd reach(const System& system, const Points& positions) {
-  Eigen::VectorXd longest = Eigen::VectorXd::Zero(system.particleCount());
-  forEachKind([&](auto kind) {
-    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-      for (const std::uint32_t i : spring.particles) {
-        for (const std::uint32_t j : spring.particles) {
-          longest[i] = std::max(longest[i], arc(positions.col(i), positions.col(j)).angle);
-        }
-      }
-    }
-  });
-  return (longest.array() > 0).select(longest, 1);
-}
-
-/// Every particle displaced by up to a share of its reach, the same way every run.
-Points displaced(const System& system, Points positions, double share, unsigned seed) {
-  std::mt19937 generator(seed);
-  const Eigen::VectorXd longest = reach(system, positions);
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    Eigen::Vector2d step;
-    for (int k = 0; k < 2; ++k) step[k] = generator() / (0.5 * std::mt19937::max()) - 1;
-    if (system.pinned(i)) continue;
-    const Vector3 p = positions.col(i);
-    positions.col(i) = rotated(p, share * longest[i] * (tangentFrame(p) * step));
-  }
-  return positions;
-}
-
-/// A spring by its place in the order of ids.
-template <class Spring>
-std::string itemName(std::size_t index) {
-  return std::string(Spring::kTable) + "[" + std::to_string(index) + "]";
-}
-
-/// The first spring whose condition is nearly undefined at `positions`; empty when there is none.
-std::string nearlyUndefinedSpring(const System& system, const Points& positions) {
-  std::string name;
-  forEachKind([&](auto kind) {
-    using Spring = typename decltype(kind)::type;
-    const auto& springs = system.springs<Spring>();
-    for (std::size_t i = 0; i < springs.size() && name.empty(); ++i) {
-      if (nearlyUndefined(springs[i], System::points(springs[i], positions))) {
-        name = itemName<Spring>(i) + ", with antipodal vertices,";
-      }
-    }
-  });
-  return name;
-}
-
 /// Null for Newton's method.
 std::unique_ptr<Descent> dynamicsOf(RelaxationMethod method, const System& system,
-                                    OrientationGuard* guard) {
+                                    OrientationGuard* guard, const TorqueLimit& limit) {
   switch (method) {
     case RelaxationMethod::newton:
       return nullptr;
     case RelaxationMethod::dynamics:
-      return std::make_unique<DampedDynamics>(system, guard);
+      return std::make_unique<DampedDynamics>(system, guard, limit);
     case RelaxationMethod::fire:
-      return std::make_unique<Fire>(system, guard);
+      return std::make_unique<Fire>(system, guard, limit);
   }
   return nullptr;
 }
@@ -92,30 +42,38 @@ class Relaxation {
              Newton& newton, bool at_start)
       : system_(system),
         options_(options),
-        tolerance_(options.tolerance > 0 ? options.tolerance : defaultTolerance(system)),
+        limit_(system, options.tolerance),
         start_(positions),
         guard_(system),
         newton_(newton) {
-    at_start = at_start && options.method == RelaxationMethod::newton;
     OrientationGuard* const guard = options.keep_orientation ? &guard_ : nullptr;
     newton_.keepOrientation(guard);
-    dynamics_ = dynamicsOf(options.method, system, guard);
+    newton_.aimAt(&limit_);
+    if (!at_start) newton_.place(positions);
+    calm_ = newton_.calm();
+    dynamics_ = dynamicsOf(options.method, system, guard, limit_);
+    if (dynamics_) dynamics_->place(positions);
     descent_ = dynamics_ ? dynamics_.get() : &newton_;
-    newton_.aimAt(tolerance_);
-    if (!at_start) descent_->place(positions);
-    first_torque_ = descent_->maxTorque();
+    first_excess_ = descent_->excess();
     result_.energy_before = descent_->value();
     keep();
   }
 
+  ~Relaxation() {
+    newton_.aimAt(nullptr);
+    newton_.keepOrientation(nullptr);
+  }
+  Relaxation(const Relaxation&) = delete;
+  Relaxation& operator=(const Relaxation&) = delete;
+
   RelaxationResult run() {
     descendToMinimum();
-    result_.positions = aligned(system_, start_, std::move(result_.positions));
+    result_.positions = aligned(system_, start_, std::move(result_.positions), calm_);
     return std::move(result_);
   }
 
  private:
-  enum class Outcome { within_tolerance, stuck, ended };
+  enum class Outcome { within_limit, stuck, ended };
 
   void descendToMinimum() {
     constexpr unsigned kAttempts = 20;
@@ -124,22 +82,25 @@ class Relaxation {
     for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
       const Outcome outcome = descend();
       if (outcome == Outcome::ended) return;
-      if (outcome == Outcome::within_tolerance) {
-        keep();
-        if (!leaveSaddle()) {
-          result_.converged = true;
-          result_.message = "converged";
-          return;
-        }
-        continue;
+      if (outcome == Outcome::within_limit) keep();
+      if (!undefinedSpring(system_, result_.positions).empty()) {
+        if (leaveUndefined(attempt)) continue;
+        break;
+      }
+      if (outcome == Outcome::within_limit) {
+        if (leaveSaddle()) continue;
+        result_.converged = true;
+        result_.message = "converged";
+        return;
       }
       if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
       if (options_.keep_orientation) break;
-      descent_->place(displaced(system_, descent_->positions(),
-                                std::min(0.1, 1e-3 * std::pow(10, attempt)), attempt));
+      descent_->place(displaced(system_, descent_->positions(), shareOf(attempt), attempt));
     }
     giveUp();
   }
+
+  static double shareOf(unsigned attempt) { return std::min(0.1, 1e-3 * std::pow(10, attempt)); }
 
   bool leaveSaddle() {
     if (dynamics_) newton_.place(dynamics_->positions());
@@ -148,15 +109,30 @@ class Relaxation {
     return true;
   }
 
+  /// Starts again beside a place where the condition of a spring is undefined, and with it the
+  /// energy: it need be no minimum, though nothing pulls there.
+  bool leaveUndefined(unsigned attempt) {
+    constexpr unsigned kAttempts = 4;
+    if (options_.keep_orientation || attempt >= kAttempts) return false;
+    const Points beside = besideUndefined(system_, result_.positions, shareOf(attempt), attempt);
+    if (!undefinedSpring(system_, beside).empty()) return false;
+    descent_->place(beside);
+    return true;
+  }
+
+  // A minimum is approached to below the limit, so that it is within it however rounding, and the
+  // turn of the whole at the end, change the torque.
   Outcome descend() {
-    while (descent_->maxTorque() > tolerance_) {
+    constexpr double kEnough = 0.9;
+    if (descent_->excess() <= 1) return Outcome::within_limit;
+    while (descent_->excess() > kEnough) {
       if (!goOn()) return Outcome::ended;
       const bool moved = descent_->iterate();
       ++result_.iterations;
       if (isBetter()) keep();
-      if (!moved && descent_->maxTorque() > tolerance_) return Outcome::stuck;
+      if (!moved) return descent_->excess() <= 1 ? Outcome::within_limit : Outcome::stuck;
     }
-    return Outcome::within_tolerance;
+    return Outcome::within_limit;
   }
 
   /// Whether the torque is what rounding of the positions makes of the springs' stiffness.
@@ -171,60 +147,67 @@ class Relaxation {
     constexpr double kRounding = 1e-13;
     const double drop = result_.energy_after - descent_->value();
     if (std::abs(drop) > kRounding * result_.energy_after) return drop > 0;
-    return descent_->maxTorque() < result_.max_torque;
+    return descent_->excess() < excess_;
   }
 
   void keep() {
     result_.positions = descent_->positions();
     result_.energy_after = descent_->value();
     result_.max_torque = descent_->maxTorque();
+    excess_ = descent_->excess();
   }
 
   bool goOn() {
     const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
     if (options_.max_time > 0 && elapsed >= options_.max_time) {
-      result_.message = "max_time is over; largest torque " + toText(result_.max_torque) +
-                        " N m, tolerance " + toText(tolerance_) + " N m";
+      result_.message = "max_time is over; " + torqueLeft();
       return false;
     }
-    const double way = std::log(first_torque_ / tolerance_);
-    const double gone = std::log(first_torque_ / std::max(result_.max_torque, tolerance_));
-    const double fraction = way > 0 ? std::clamp(gone / way, 0., 1.) : 1;
-    if (options_.go_on({result_, fraction})) return true;
+    if (options_.go_on({result_, fraction()})) return true;
     result_.message = "cancelled; largest torque " + toText(result_.max_torque) + " N m";
     return false;
   }
 
+  /// Of the way to the limit, by the logarithm of the torque.
+  double fraction() const {
+    const double way = std::log(first_excess_);
+    const double gone = std::log(first_excess_ / std::max(excess_, 1.));
+    return way > 0 && std::isfinite(way) ? std::clamp(gone / way, 0., 1.) : 0;
+  }
+
   void giveUp() {
-    if (result_.max_torque <= tolerance_) {
-      result_.message = "the torque is within the tolerance, but not at a minimum of the energy";
-      return;
-    }
-    const std::string spring = nearlyUndefinedSpring(system_, result_.positions);
-    std::string reason = "rounding ends it";
+    const std::string undefined = undefinedSpring(system_, result_.positions);
+    std::string reason = "a long series of steps gained next to nothing";
     if (options_.keep_orientation && guard_.tightest()) {
-      reason = itemName<SolidAngleSpring>(*guard_.tightest()) + " would fold, which ends it";
-    } else if (!spring.empty()) {
-      reason = spring + " has no area, which ends it";
-    } else if (!atRoundingFloor()) {
-      reason = "a long series of them gained next to nothing, which ends it";
+      reason = nameOf<SolidAngleSpring>(system_, *guard_.tightest()) + " would fold";
+    } else if (!undefined.empty()) {
+      reason = undefined + " has antipodal vertices, where its area is undefined";
+    } else if (excess_ <= 1) {
+      reason = "the torque is within the tolerance, but not at a minimum of the energy";
+    } else if (atRoundingFloor()) {
+      reason = "rounding lets no step lower the energy further";
     }
-    result_.message = "steps lower the energy no further: " + reason + " at a largest torque of " +
-                      toText(result_.max_torque) + " N m, above the tolerance of " +
-                      toText(tolerance_) + " N m";
+    result_.message = "stopped: " + reason + "; " + torqueLeft();
+  }
+
+  std::string torqueLeft() const {
+    const std::string largest = "largest torque " + toText(result_.max_torque) + " N m";
+    return largest + excessInWords(system_, result_.positions, limit_);
   }
 
   const System& system_;
   const RelaxationOptions& options_;
-  const double tolerance_;
+  const TorqueLimit limit_;
   const Clock::time_point begin_ = Clock::now();
   const Points& start_;
+  std::vector<bool> calm_;  // at the start
   OrientationGuard guard_;
   Newton& newton_;
   std::unique_ptr<Descent> dynamics_;  // none for Newton's method
   Descent* descent_;
-  double first_torque_;
+  double first_excess_;
   RelaxationResult result_;
+  double excess_ = 0;  // of the result
 };
 
 }  // namespace
@@ -237,29 +220,46 @@ RelaxationMethod relaxationMethod(const std::string& name) {
                               "; allowed: newton (the default), dynamics, fire");
 }
 
-double defaultTolerance(const System& system) { return 1e-9 * system.largestStiffness(); }
+void requireValid(const RelaxationOptions& options) {
+  requireInside(
+      Range{0, kLargest, "0 (1e-9 of the stiffness that each particle feels) to 1e30 [N m]"},
+      options.tolerance, "tolerance");
+  requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
+}
+
+RelaxationResult unrelaxed(const System& system, const Points& positions) {
+  RelaxationResult result;
+  result.positions = positions;
+  result.energy_before = result.energy_after = system.potential(positions).total();
+  System::Workspace workspace;
+  system.evaluate(positions, workspace);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    if (system.pinned(i)) continue;
+    result.max_torque = std::max(result.max_torque, workspace.torques.col(i).stableNorm());
+  }
+  return result;
+}
 
 Relaxer::Relaxer() = default;
 Relaxer::~Relaxer() = default;
 
 RelaxationResult Relaxer::relax(const System& system, const Points& positions,
                                 const RelaxationOptions& options) {
-  requireInside(Range{0, kLargest, "0 (the default) to 1e30 [N m]"}, options.tolerance,
-                "tolerance");
-  requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
+  requireValid(options);
   // Only from the very place where the last one ended, so that results do not depend on what was
   // relaxed before from elsewhere.
   const bool goes_on = newton_ && newton_->fits(system) && positions == last_end_;
+  // Kept only from a relaxation that has come to its end.
+  std::unique_ptr<Newton> newton = std::move(newton_);
   if (goes_on) {
-    newton_->goOn(system, positions);
+    newton->goOn(system, positions);
   } else {
-    newton_ = std::make_unique<Newton>(system, positions);
+    newton = std::make_unique<Newton>(system, positions);
   }
-  RelaxationResult result = Relaxation(system, positions, options, *newton_, goes_on).run();
+  RelaxationResult result = Relaxation(system, positions, options, *newton, goes_on).run();
   if (options.method == RelaxationMethod::newton) {
-    last_end_ = result.positions;
-  } else {
-    newton_.reset();  // it was not on the way
+    last_end_ = Points(result.positions);
+    newton_ = std::move(newton);
   }
   return result;
 }

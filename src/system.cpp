@@ -34,6 +34,7 @@ System::System(const Scene& scene, Options options) : options_(options) {
   masses_.resize(count);
   inverse_masses_.resize(count);
   Eigen::VectorXd viscous(count);
+  particle_ids_ = particles.ids();
   layout_ = std::make_shared<LayoutOnDemand>();
   layout_->positions.resize(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -51,6 +52,8 @@ System::System(const Scene& scene, Options options) : options_(options) {
     using Spring = typename decltype(kind)::type;
     auto& springs = springs_.get<Spring>();
     springs.reserve(scene.springs<Spring>().size());
+    const auto& ids = scene.springs<Spring>().ids();
+    spring_ids_.get<Spring>().assign(ids.begin(), ids.end());
     for (Spring spring : scene.springs<Spring>().items()) {
       for (std::uint32_t& end : spring.particles) {
         end = static_cast<std::uint32_t>(*particles.find(end));

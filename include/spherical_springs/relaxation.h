@@ -37,7 +37,9 @@ struct RelaxationProgress {
 
 struct RelaxationOptions {
   RelaxationMethod method = RelaxationMethod::newton;
-  double tolerance = 0;  ///< largest torque left on a free particle [N m]; 0: the default
+  /// Largest torque left on a free particle [N m]; 0: 1e-9 of the stiffness that the particle
+  /// feels, half the trace of its block of the definite Hessian.
+  double tolerance = 0;
   double max_time = 0;   ///< wall [s]; 0: no limit
   /// Whether steps are cut before a triangle of a solid-angle spring would fold: one that is
   /// oriented as its rest angle asks, or that asks for none.
@@ -46,8 +48,12 @@ struct RelaxationOptions {
   std::function<bool(const RelaxationProgress&)> go_on = [](const auto&) { return true; };
 };
 
-/// 1e-9 of the largest stiffness [N m].
-double defaultTolerance(const System& system);
+/// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+void requireValid(const RelaxationOptions& options);
+
+/// The result of a relaxation that has not moved anything: energy and torque at `positions`, no
+/// message.
+RelaxationResult unrelaxed(const System& system, const Points& positions);
 
 class Newton;
 
@@ -60,9 +66,11 @@ class Relaxer {
   ~Relaxer();
 
   /// Moves free particles from `positions` to a minimum of the potential energy. A start on a
-  /// saddle or a maximum is left, the same way every run. What springs join is not turned as a
-  /// whole: of all places that differ by a rotation the result is the nearest to `positions`.
-  /// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+  /// saddle or a maximum is left, the same way every run; so is a place where a condition is
+  /// undefined, or the message names its spring. What springs join is not turned as a whole: of all
+  /// places that differ by a rotation the result is the nearest to `positions`. Particles without
+  /// springs, and groups of joined particles that are relaxed already, keep their bits.
+  /// @throw std::invalid_argument as `requireValid`.
   RelaxationResult relax(const System& system, const Points& positions,
                          const RelaxationOptions& options);
 

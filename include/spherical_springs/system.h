@@ -45,12 +45,23 @@ class System {
   const Eigen::VectorXd& masses() const { return masses_; }
   const Eigen::VectorXd& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
+  /// Whether a spring ends at a particle.
+  bool joined(Eigen::Index particle) const {
+    return first_end_[particle] < first_end_[particle + 1];
+  }
   const Damping& damping() const { return damping_; }
   SpringDamping springDamping() const { return options_.spring_damping; }
   /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
   bool conservesAngularMomentum() const;
   double largestStiffness() const;
   int threads() const { return options_.threads; }
+
+  std::uint32_t particleId(std::size_t index) const { return particle_ids_[index]; }
+  /// Id of a spring of a kind, by its index in `springs`.
+  template <class Spring>
+  std::uint32_t springId(std::size_t index) const {
+    return spring_ids_.get<Spring>()[index];
+  }
 
   /// Springs of a kind, whose `particles` are indices.
   template <class Spring>
@@ -96,6 +107,8 @@ class System {
   Eigen::VectorXd masses_, inverse_masses_;
   bool any_pinned_ = false;
   SpringLists springs_;
+  std::vector<std::uint32_t> particle_ids_;
+  SpringIds spring_ids_;
   Damping damping_;
   std::size_t end_count_ = 0;
   // The ends of springs at each particle: those of particle i are at ends_[first_end_[i]] and on,

@@ -30,7 +30,8 @@ double multiply(const BlockPattern& pattern, const Blocks<Real, 2>& matrix, cons
 template <class Real>
 ModelMinimum minimise(const BlockPattern& pattern, const Blocks<Real, 2>& matrix,
                       Preconditioner<Real>& preconditioner, const Eigen::VectorXd& gradient,
-                      double tolerance, int most_iterations, int threads) {
+                      const Eigen::VectorXd& weights, double tolerance, int most_iterations,
+                      int threads) {
   const double scale = gradient.norm();
   VectorOf<Real> residual = (-gradient / scale).template cast<Real>();
   VectorOf<Real> step = VectorOf<Real>::Zero(gradient.size());
@@ -38,6 +39,9 @@ ModelMinimum minimise(const BlockPattern& pattern, const Blocks<Real, 2>& matrix
   preconditioner.apply(residual, preconditioned);
   VectorOf<Real> direction = preconditioned;
   double descent = dot(residual, preconditioned, threads);
+  const double weighted = std::sqrt(parallelSum(pattern.rows(), threads, [&](std::ptrdiff_t i) {
+    return weights[i] * weights[i] * part<2>(residual, i).squaredNorm();
+  }));
 
   ModelMinimum result;
   while (result.iterations < most_iterations) {
@@ -49,11 +53,12 @@ ModelMinimum minimise(const BlockPattern& pattern, const Blocks<Real, 2>& matrix
       break;
     }
     const double length = descent / curvature;
-    result.residual = std::sqrt(parallelSum(pattern.rows(), threads, [&](std::ptrdiff_t i) {
+    const double left = std::sqrt(parallelSum(pattern.rows(), threads, [&](std::ptrdiff_t i) {
       part<2>(step, i) += Real(length) * part<2>(direction, i);
       part<2>(residual, i) -= Real(length) * part<2>(product, i);
-      return static_cast<double>(part<2>(residual, i).squaredNorm());
+      return weights[i] * weights[i] * part<2>(residual, i).squaredNorm();
     }));
+    result.residual = left / weighted;
     if (result.residual <= tolerance) break;
     preconditioner.apply(residual, preconditioned);
     const double next = dot(residual, preconditioned, threads);
@@ -68,8 +73,9 @@ ModelMinimum minimise(const BlockPattern& pattern, const Blocks<Real, 2>& matrix
 }
 
 template ModelMinimum minimise(const BlockPattern&, const Blocks<float, 2>&, Preconditioner<float>&,
-                               const Eigen::VectorXd&, double, int, int);
+                               const Eigen::VectorXd&, const Eigen::VectorXd&, double, int, int);
 template ModelMinimum minimise(const BlockPattern&, const Blocks<double, 2>&,
-                               Preconditioner<double>&, const Eigen::VectorXd&, double, int, int);
+                               Preconditioner<double>&, const Eigen::VectorXd&,
+                               const Eigen::VectorXd&, double, int, int);
 
 }  // namespace spherical_springs::core

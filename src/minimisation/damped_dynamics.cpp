@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "../stepping/evaluation.h"
+
 namespace spherical_springs::core {
 namespace {
 
@@ -9,16 +11,18 @@ constexpr IntegrationMethod kMethod = IntegrationMethod::verlet;
 
 }  // namespace
 
-DampedDynamics::DampedDynamics(const System& system, OrientationGuard* guard)
-    : system_(std::shared_ptr<const System>(), &system), guard_(guard) {}
+DampedDynamics::DampedDynamics(const System& system, OrientationGuard* guard,
+                               const TorqueLimit& limit)
+    : system_(std::shared_ptr<const System>(), &system), guard_(guard), limit_(limit) {}
 
 void DampedDynamics::place(const Points& positions) {
   state_ = {};
   state_.positions = positions;
+  allowed_ = allowedTorques(*system_, positions, limit_);
   stop();
   measure();
-  least_torque_ = max_torque_;
-  least_torque_step_ = 0;
+  least_excess_ = excess_;
+  least_excess_step_ = 0;
 }
 
 void DampedDynamics::stop() {
@@ -28,7 +32,14 @@ void DampedDynamics::stop() {
 
 void DampedDynamics::measure() {
   value_ = system_->potential(state_.positions).total();
-  max_torque_ = core::maxTorque(*system_, state_);
+  const Evaluation here(*system_, state_.positions);
+  auto largest = here.largestTorque(allowed_);
+  if (largest.excess <= 1 && limit_.isRelative()) {
+    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+    largest = here.largestTorque(allowed_);
+  }
+  max_torque_ = largest.torque;
+  excess_ = largest.excess;
 }
 
 void DampedDynamics::chooseTimeStep() {
@@ -50,8 +61,11 @@ void DampedDynamics::keepOrientation(const Points& from) {
 
 bool DampedDynamics::iterate() {
   constexpr std::uint64_t kStepLasts = 50;
-  constexpr std::uint64_t kPatience = 20000;  // steps without a smaller torque
-  if (state_.steps % kStepLasts == 0) chooseTimeStep();
+  constexpr std::uint64_t kPatience = 20000;  // steps without a smaller excess
+  if (state_.steps % kStepLasts == 0) {
+    chooseTimeStep();
+    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+  }
   const Points from = state_.positions;
   integrator_->step(state_);
   const double kinetic = system_->kinetic(state_.angular_velocities);
@@ -63,11 +77,11 @@ bool DampedDynamics::iterate() {
     if (guard_) keepOrientation(from);
   }
   measure();
-  if (max_torque_ < least_torque_) {
-    least_torque_ = max_torque_;
-    least_torque_step_ = state_.steps;
+  if (excess_ < least_excess_) {
+    least_excess_ = excess_;
+    least_excess_step_ = state_.steps;
   }
-  return state_.steps - least_torque_step_ < kPatience;
+  return state_.steps - least_excess_step_ < kPatience;
 }
 
 }  // namespace spherical_springs::core

@@ -6,6 +6,7 @@
 #include "orientation_guard.h"
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/measures.h"
+#include "torque_limit.h"
 
 namespace spherical_springs::core {
 
@@ -15,12 +16,13 @@ namespace spherical_springs::core {
 class DampedDynamics : public Descent {
  public:
   /// Steps are cut before what `guard` forbids; null: nothing is forbidden. Both must live longer.
-  DampedDynamics(const System& system, OrientationGuard* guard);
+  DampedDynamics(const System& system, OrientationGuard* guard, const TorqueLimit& limit);
   void place(const Points& positions) override;
   bool iterate() override;
   Points positions() const override { return state_.positions; }
   double value() const override { return value_; }
   double maxTorque() const override { return max_torque_; }
+  double excess() const override { return excess_; }
 
  private:
   void chooseTimeStep();
@@ -34,8 +36,11 @@ class DampedDynamics : public Descent {
   State state_;
   double value_ = 0, kinetic_ = 0;  // [J]
   double max_torque_ = 0;           // [N m]
-  double least_torque_ = 0;         // [N m]
-  std::uint64_t least_torque_step_ = 0;
+  TorqueLimit limit_;
+  Eigen::VectorXd allowed_;  // torques, at positions of a while ago where the limit is relative
+  double excess_ = 0;
+  double least_excess_ = 0;
+  std::uint64_t least_excess_step_ = 0;
 };
 
 }  // namespace spherical_springs::core

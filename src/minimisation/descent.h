@@ -20,6 +20,9 @@ class Descent {
   virtual Points positions() const = 0;  ///< of all particles, in the order of their ids
   virtual double value() const = 0;      ///< energy [J]
   virtual double maxTorque() const = 0;  ///< on a free particle [N m]
+
+  /// The largest torque on a free particle as a multiple of what the limit allows there.
+  virtual double excess() const = 0;
 };
 
 }  // namespace spherical_springs::core

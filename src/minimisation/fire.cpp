@@ -14,6 +14,7 @@ void Fire::place(const Points& positions) {
   time_step_ = kFirstStep;
   mixing_ = kFirstMixing;
   downhill_ = age_ = since_least_ = 0;
+  allowed_ = allowedTorques(system_, positions_, limit_);
   evaluate();
 }
 
@@ -23,6 +24,16 @@ void Fire::evaluate() {
   for (Eigen::Index i = 0; i < positions_.cols(); ++i) {
     if (system_.pinned(i)) workspace_.torques.col(i).setZero();
   }
+  measureExcess();
+  if (excess_ > 1 || !limit_.isRelative()) return;
+  allowed_ = allowedTorques(system_, positions_, limit_);
+  measureExcess();
+}
+
+void Fire::measureExcess() {
+  excess_ = parallelLargest(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
+    return excessOf(workspace_.torques.col(i).norm(), allowed_[i]);
+  });
 }
 
 double Fire::maxTorque() const {
@@ -58,12 +69,13 @@ void Fire::move() {
 
 bool Fire::iterate() {
   constexpr int kInertiaLasts = 50;
-  constexpr int kPatience = 20000;  // iterations without a smaller torque
+  constexpr int kPatience = 20000;  // iterations without a smaller excess
   constexpr int kDelay = 5;
   constexpr double kGrowth = 1.1, kMixingDecay = 0.99;
   constexpr double kLongestStep = 10 * kFirstStep;
   if (age_++ % kInertiaLasts == 0) {
     mobility_ = particleStiffness(system_, positions_).cwiseInverse();
+    allowed_ = allowedTorques(system_, positions_, limit_);
   }
 
   const Points acceleration = workspace_.torques * mobility_.asDiagonal();
@@ -83,9 +95,8 @@ bool Fire::iterate() {
   move();
   evaluate();
 
-  const double torque = workspace_.torques.norm();
-  if (since_least_ == 0 || torque < least_torque_) {
-    least_torque_ = torque;
+  if (since_least_ == 0 || excess_ < least_excess_) {
+    least_excess_ = excess_;
     since_least_ = 0;
   }
   return ++since_least_ < kPatience;

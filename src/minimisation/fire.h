@@ -3,6 +3,7 @@
 #include "descent.h"
 #include "orientation_guard.h"
 #include "spherical_springs/system.h"
+#include "torque_limit.h"
 
 namespace spherical_springs::core {
 
@@ -13,17 +14,20 @@ namespace spherical_springs::core {
 class Fire : public Descent {
  public:
   /// Steps are cut before what `guard` forbids; null: nothing is forbidden. Both must live longer.
-  Fire(const System& system, OrientationGuard* guard) : system_(system), guard_(guard) {}
+  Fire(const System& system, OrientationGuard* guard, const TorqueLimit& limit)
+      : system_(system), guard_(guard), limit_(limit) {}
   void place(const Points& positions) override;
   bool iterate() override;
   Points positions() const override { return positions_; }
   double value() const override { return value_; }
   double maxTorque() const override;
+  double excess() const override { return excess_; }
 
  private:
   static constexpr double kFirstStep = 0.1, kFirstMixing = 0.1;
 
   void evaluate();
+  void measureExcess();
   void stop();
   void move();
 
@@ -32,13 +36,16 @@ class Fire : public Descent {
   Points positions_;
   System::Workspace workspace_;
   double value_ = 0;
+  TorqueLimit limit_;
+  Eigen::VectorXd allowed_;  // torques, at positions of a while ago where the limit is relative
+  double excess_ = 0;
   Points velocities_;         // angular
   Eigen::VectorXd mobility_;  // of each particle, 1 / inertia; 0 where pinned
   double time_step_ = kFirstStep, mixing_ = kFirstMixing;
   int downhill_ = 0;  // iterations since the power was last negative
   int age_ = 0;       // iterations
-  double least_torque_ = 0;
-  int since_least_ = 0;  // iterations since the torque was least
+  double least_excess_ = 0;
+  int since_least_ = 0;  // iterations since the excess was least
 };
 
 }  // namespace spherical_springs::core

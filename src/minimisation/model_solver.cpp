@@ -28,8 +28,9 @@ void ModelSolver::shift(const TangentEnergy::Hessian& hessian, const Eigen::Vect
 template <class Real, class MakePreconditioner>
 ModelMinimum ModelSolver::solve(InPrecision<Real>& in, const TangentEnergy& energy,
                                 const TangentEnergy::Hessian* definite,
-                                const Eigen::VectorXd& shifts, const Eigen::VectorXd& gradient,
-                                double tolerance, const MakePreconditioner& make) {
+                                const Eigen::VectorXd& shifts, const Eigen::VectorXd& weights,
+                                const Eigen::VectorXd& gradient, double tolerance,
+                                const MakePreconditioner& make) {
   shift(energy.hessian(), shifts, in.hessian);
   if (definite) shift(*definite, shifts, in.definite);
   const Blocks<Real, 2>& values = definite ? in.definite : in.hessian;
@@ -40,7 +41,8 @@ ModelMinimum ModelSolver::solve(InPrecision<Real>& in, const TangentEnergy& ener
     return none;
   }
   const int most = cholesky_refused_ ? kMostIterations : kTooMany;
-  return minimise(pattern_, in.hessian, *in.preconditioner, gradient, tolerance, most, threads_);
+  return minimise(pattern_, in.hessian, *in.preconditioner, gradient, weights, tolerance, most,
+                  threads_);
 }
 
 /// Whether a factorisation can take over from the multigrid, and is there now.
@@ -58,20 +60,20 @@ bool ModelSolver::tryCholesky() {
 
 ModelMinimum ModelSolver::minimum(const TangentEnergy& energy,
                                   const TangentEnergy::Hessian* definite,
-                                  const Eigen::VectorXd& shifts, const Eigen::VectorXd& gradient,
-                                  double tolerance) {
+                                  const Eigen::VectorXd& shifts, const Eigen::VectorXd& weights,
+                                  const Eigen::VectorXd& gradient, double tolerance) {
   if (!double_.preconditioner) {
     const auto make = [&](const Blocks<float, 2>& values) {
       return std::make_unique<Multigrid<float>>(pattern_, values, energy.frames(), threads_);
     };
-    auto result = solve(single_, energy, definite, shifts, gradient, tolerance, make);
+    auto result = solve(single_, energy, definite, shifts, weights, gradient, tolerance, make);
     if (result.indefinite || result.residual <= tolerance || !tryCholesky()) return result;
     single_ = {};
   }
   const auto make = [&](const Blocks<double, 2>&) {
     return std::make_unique<MultifrontalCholesky>(pattern_, threads_);
   };
-  return solve(double_, energy, definite, shifts, gradient, tolerance, make);
+  return solve(double_, energy, definite, shifts, weights, gradient, tolerance, make);
 }
 
 }  // namespace spherical_springs::core

@@ -17,11 +17,12 @@ class ModelSolver {
 
   /// The model of `gradient` and the energy's Hessian, with `shifts` (one a free particle) added to
   /// the diagonal. `definite`: a matrix whose inverse preconditions; null for the Hessian's own.
-  /// @return the minimum, with `tolerance` of the gradient left, or somewhat more where that is
-  /// out of reach.
+  /// `weights`: one a free particle, as `minimise` has them.
+  /// @return the minimum, with `tolerance` of the weighted gradient left, or somewhat more where
+  /// that is out of reach.
   ModelMinimum minimum(const TangentEnergy& energy, const TangentEnergy::Hessian* definite,
-                       const Eigen::VectorXd& shifts, const Eigen::VectorXd& gradient,
-                       double tolerance);
+                       const Eigen::VectorXd& shifts, const Eigen::VectorXd& weights,
+                       const Eigen::VectorXd& gradient, double tolerance);
 
  private:
   template <class Real>
@@ -36,8 +37,8 @@ class ModelSolver {
   template <class Real, class MakePreconditioner>
   ModelMinimum solve(InPrecision<Real>& in, const TangentEnergy& energy,
                      const TangentEnergy::Hessian* definite, const Eigen::VectorXd& shifts,
-                     const Eigen::VectorXd& gradient, double tolerance,
-                     const MakePreconditioner& make);
+                     const Eigen::VectorXd& weights, const Eigen::VectorXd& gradient,
+                     double tolerance, const MakePreconditioner& make);
   bool tryCholesky();
 
   const BlockPattern& pattern_;

@@ -30,6 +30,12 @@ Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd in
       energy_(system, positions, std::move(inertia)),
       solver_(energy_.pattern(), threads_) {}
 
+void Newton::aimAt(const TorqueLimit* limit) {
+  limit_ = limit;
+  excess_ = kInfinity;
+  if (limit_ && scale_.size() > 0) measureExcess();
+}
+
 void Newton::place(const Points& positions) {
   energy_.place(positions);
   model_ = Model::definite;
@@ -69,12 +75,54 @@ void Newton::evaluate() {
   if (model_ == Model::indefinite) definite_ = energy_.hessian();
   if (model_ == Model::tempered) energy_.evaluate(Curvature::tempered);
   if (model_ == Model::exact || model_ == Model::indefinite) energy_.evaluate(Curvature::exact);
+  if (limit_) measureExcess();
+}
+
+/// Half the trace of the block of a free particle in the definite Hessian, where there is one, or
+/// in the model's, whose trace is at most that.
+double Newton::stiffnessAt(std::size_t free) const {
+  const auto& blocks = model_ == Model::indefinite ? definite_ : energy_.hessian();
+  return 0.5 * blocks[energy_.pattern().diagonal[free]].trace();
+}
+
+template <class Stiffness>
+double Newton::largestExcess(const Stiffness& stiffness) const {
+  return parallelLargest(energy_.freeCount(), threads_,
+                         [&](std::ptrdiff_t i) { return excessAt(i, stiffness(i)); });
+}
+
+/// `stiffness`: in units of the energy, as the gradient.
+double Newton::excessAt(std::size_t free, double stiffness) const {
+  const double torque = energy_.unit() * energy_.gradient().segment<2>(2 * free).norm();
+  const double felt = energy_.unit() * std::max(stiffness, 0.);
+  return excessOf(torque, limit_->allowed(energy_.particle(free), felt));
+}
+
+// Springs under pressure take from the trace of the exact Hessian. Where that alone is in the way,
+// the definite one decides.
+void Newton::measureExcess() {
+  const auto by_model = [this](std::ptrdiff_t i) { return stiffnessAt(i); };
+  excess_ = largestExcess(by_model);
+  if (!limit_->isRelative() || excess_ <= 1) return;
+  if (model_ != Model::exact && model_ != Model::tempered) return;
+  if (largestExcess([this](std::ptrdiff_t i) { return scale_[i]; }) > 1) return;
+  energy_.evaluate(Curvature::definite);
+  excess_ = largestExcess(by_model);
+  energy_.evaluate(model_ == Model::exact ? Curvature::exact : Curvature::tempered);
+}
+
+std::vector<bool> Newton::calm() const {
+  std::vector<bool> calm(energy_.positions().cols(), true);
+  for (std::size_t i = 0; i < energy_.freeCount(); ++i) {
+    calm[energy_.particle(i)] = excessAt(i, stiffnessAt(i)) <= 1;
+  }
+  return calm;
 }
 
 ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) {
   const auto* definite = model_ == Model::indefinite ? &definite_ : nullptr;
   const Eigen::VectorXd shifts = scale_.cwiseProduct((hold_.array() + shift_).matrix());
-  return solver_.minimum(energy_, definite, shifts, gradient, tolerance);
+  return solver_.minimum(energy_, definite, shifts, scale_.cwiseInverse(), gradient, tolerance);
 }
 
 /// How much of the gradient a step may leave: little where earlier steps have left little, or where
@@ -82,8 +130,8 @@ ModelMinimum Newton::minimum(const Eigen::VectorXd& gradient, double tolerance) 
 double Newton::tolerance() const {
   constexpr double kMost = 0.1, kNearEnd = 1e-2, kLeast = 1e-4;
   if (iterations_ == 0) return model_ == Model::exact ? kNearEnd : kMost;
-  const double left = energy_.gradient().norm() / earlier_gradient_;
-  const double enough = 0.3 * wanted_torque_ / energy_.maxTorque();
+  const double left = scaledGradient() / earlier_gradient_;
+  const double enough = 0.3 / excess_;
   return std::clamp(std::max(0.9 * std::pow(left, 1.5), enough), kLeast, kMost);
 }
 
@@ -96,6 +144,13 @@ double Newton::longestMove(const Eigen::VectorXd& step) const {
 double Newton::scaledLength(const Eigen::VectorXd& step) const {
   return std::sqrt(parallelSum(scale_.size(), threads_, [&](std::ptrdiff_t i) {
     return scale_[i] * step.segment<2>(2 * i).squaredNorm();
+  }));
+}
+
+/// Over the stiffness, so that soft springs count as much as stiff ones.
+double Newton::scaledGradient() const {
+  return std::sqrt(parallelSum(scale_.size(), threads_, [&](std::ptrdiff_t i) {
+    return energy_.gradient().segment<2>(2 * i).squaredNorm() / (scale_[i] * scale_[i]);
   }));
 }
 
@@ -156,7 +211,7 @@ bool Newton::iterate() {
 
 Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   const double value = energy_.value();
-  const double gradient = energy_.gradient().norm();
+  const double gradient = scaledGradient();
   const double expected = energy_.expectedDrop(minimum.step);
   const double length = scaledLength(minimum.step);
   // Where the energy cannot resolve the drop any more, the gradient still can.
@@ -171,7 +226,9 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   if (resolved && ratio < kPoor) correct();
 
   const double drop = value - energy_.value();
-  if (resolved ? drop > 1e-4 * expected : energy_.gradient().norm() < gradient) {
+  const bool better =
+      resolved ? drop > 1e-4 * expected : drop > -kRounding * value && scaledGradient() < gradient;
+  if (better) {
     if (!resolved || ratio > kGood) {
       shift_ = std::max(shift_ / 4, kLeastShift);
       radius_ = std::max(radius_, 2 * length);
@@ -199,7 +256,7 @@ void Newton::chooseModel(const ModelMinimum& minimum) {
   if (minimum.indefinite) model_ = Model::indefinite;
   if (calm_iterations_ < 2) return;
   // What follows the last step asks for the exact one.
-  const bool last = minimum.residual * energy_.maxTorque() <= wanted_torque_;
+  const bool last = minimum.residual * excess_ <= 1;
   const bool tempered = model_ == Model::tempered && pace_ == Pace::good && !last;
   model_ = model_ == Model::definite || tempered ? Model::tempered : Model::exact;
 }
@@ -220,11 +277,25 @@ void Newton::correct() {
 /// the energy has no derivative.
 bool Newton::creeps() {
   constexpr int kWindow = 300;
-  constexpr double kNextToNothing = 1e-6;
+  constexpr double kNextToNothing = 1e-4;
   if (iterations_ % kWindow != 0) return false;
   const bool creeping = iterations_ > 0 && energy_.value() > (1 - kNextToNothing) * earlier_value_;
   earlier_value_ = energy_.value();
   return creeping;
+}
+
+/// Forgets a scale that is far above the present stiffness somewhere, as where the way has led to
+/// particles on one spot: beside it negative curvature would seem negligible.
+void Newton::scaleToHere() {
+  constexpr double kFarAbove = 100;
+  bool far_above = false;
+  for (Eigen::Index i = 0; i < scale_.size() && !far_above; ++i) {
+    far_above = scale_[i] > kFarAbove * stiffnessAt(i);
+  }
+  if (!far_above) return;
+  scale_.setZero();
+  model_ = Model::definite;
+  evaluate();
 }
 
 bool Newton::leaveSaddle() {
@@ -232,6 +303,7 @@ bool Newton::leaveSaddle() {
   constexpr double kProbeTolerance = 3e-2;
   if (energy_.freeCount() == 0) return false;
   shift_ = kNegligible;
+  scaleToHere();
   if (model_ == Model::definite || model_ == Model::tempered) {
     model_ = Model::exact;
     evaluate();

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <limits>
+#include <vector>
+
 #include "descent.h"
 #include "model_solver.h"
 #include "orientation_guard.h"
 #include "tangent_energy.h"
+#include "torque_limit.h"
 
 namespace spherical_springs::core {
 
@@ -25,8 +29,13 @@ class Newton : public Descent {
   void goOn(const System& system, const Points& positions);
   void setTargets(const Points& targets) { energy_.setTargets(targets); }
 
-  /// The torque [N m] that is wanted, so that no step goes further for nothing.
-  void aimAt(double torque) { wanted_torque_ = torque; }
+  /// The torque that may be left, so that no step goes further for nothing. `limit` must live as
+  /// long as it is aimed at; null: none, and the excess is infinite.
+  void aimAt(const TorqueLimit* limit);
+
+  /// Whether the torque on each particle, in the order of their ids, is within the limit; true
+  /// where particles cannot move.
+  std::vector<bool> calm() const;
 
   /// Steps are cut before what `guard` forbids; null: nothing is forbidden.
   void keepOrientation(OrientationGuard* guard) { guard_ = guard; }
@@ -36,6 +45,7 @@ class Newton : public Descent {
   Points positions() const override { return energy_.positions(); }
   double value() const override { return energy_.unit() * energy_.value(); }
   double maxTorque() const override { return energy_.maxTorque(); }
+  double excess() const override { return excess_; }
 
   /// Where the torque vanishes: whether a direction leads down all the same, beyond what rounding
   /// leaves open; if so, goes along it.
@@ -51,17 +61,24 @@ class Newton : public Descent {
 
   void forgetSteps();
   void evaluate();
+  void measureExcess();
+  double stiffnessAt(std::size_t free) const;
+  double excessAt(std::size_t free, double stiffness) const;
+  template <class Stiffness>
+  double largestExcess(const Stiffness& stiffness) const;
   ModelMinimum minimum(const Eigen::VectorXd& gradient, double tolerance);
   double tolerance() const;
   void chooseModel(const ModelMinimum& minimum);
   double longestMove(const Eigen::VectorXd& step) const;
   double scaledLength(const Eigen::VectorXd& step) const;
+  double scaledGradient() const;
   void goDownward(ModelMinimum& minimum) const;
   void keepInside(Eigen::VectorXd& step);
   double allowedShare(const Eigen::VectorXd& step);
   Trial tryStep(const ModelMinimum& minimum);
   void correct();
   bool creeps();
+  void scaleToHere();
 
   int threads_;
   TangentEnergy energy_;
@@ -72,7 +89,8 @@ class Newton : public Descent {
   Eigen::VectorXd hold_;   // shares of the scale that the guard has added
   double shift_ = 0;
   double radius_ = 0;  // that steps stay inside, in their scaled length
-  double wanted_torque_ = 0;
+  const TorqueLimit* limit_ = nullptr;
+  double excess_ = std::numeric_limits<double>::infinity();
   OrientationGuard* guard_ = nullptr;
   int iterations_ = 0;
   int calm_iterations_ = 0;  // since negative curvature

@@ -7,11 +7,11 @@
 
 namespace spherical_springs::core {
 
-ParticleOrder particleOrder(const System& system, const Points& positions) {
+ParticleOrder particleOrder(const std::vector<bool>& free, const Points& positions) {
   ParticleOrder order;
   order.particles = curveOrder(positions);
   const auto free_end = std::stable_partition(order.particles.begin(), order.particles.end(),
-                                              [&](std::uint32_t i) { return !system.pinned(i); });
+                                              [&](std::uint32_t i) { return free[i]; });
   order.free_count = free_end - order.particles.begin();
   order.numbers.resize(order.particles.size());
   for (std::uint32_t n = 0; n < order.numbers.size(); ++n) order.numbers[order.particles[n]] = n;

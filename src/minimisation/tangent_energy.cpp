@@ -8,9 +8,22 @@
 
 namespace spherical_springs::core {
 
+namespace {
+
+/// Particles that something acts on: springs or, where there is inertia, their targets.
+std::vector<bool> freeParticles(const System& system, bool inertia) {
+  std::vector<bool> free(system.particleCount());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    free[i] = !system.pinned(i) && (inertia || system.joined(i));
+  }
+  return free;
+}
+
+}  // namespace
+
 TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
     : threads_(system.threads()),
-      order_(particleOrder(system, positions)),
+      order_(particleOrder(freeParticles(system, inertia.size() > 0), positions)),
       pattern_(freeGraph(system, order_, threads_), threads_),
       inertia_(std::move(inertia)) {
   forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
@@ -61,8 +74,9 @@ void TangentEnergy::compile(const System& system) {
 bool TangentEnergy::fits(const System& system) const {
   constexpr double kMostChange = 2;  // factor of a stiffness
   if (static_cast<std::size_t>(system.particleCount()) != order_.particles.size()) return false;
+  const std::vector<bool> free = freeParticles(system, inertia_.size() > 0);
   for (std::size_t n = 0; n < order_.particles.size(); ++n) {
-    if (system.pinned(order_.particles[n]) != (n >= freeCount())) return false;
+    if (free[order_.particles[n]] != (n < freeCount())) return false;
   }
   bool fits = true;
   forEachKind([&](auto kind) {
@@ -147,6 +161,7 @@ void TangentEnergy::setTargets(const Points& targets) {
 
 void TangentEnergy::move(const Eigen::VectorXd& step) {
   parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    if (step.segment<2>(2 * n).isZero(0)) return;
     const auto& [frame, from] = places_[n];
     const Vector3 point = (from + frame * step.segment<2>(2 * n)).normalized();
     places_[n] = {carried(frame, point), point};

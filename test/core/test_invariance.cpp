@@ -27,7 +27,9 @@ RelaxationResult relaxed(const Scene& scene, const Points& positions, int thread
 double netTurn(const Points& before, const Points& after) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(after * before.transpose(),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d turn = svd.matrixV() * svd.matrixU().transpose();
+  Eigen::Matrix3d v = svd.matrixV();
+  if ((v * svd.matrixU().transpose()).determinant() < 0) v.col(2) *= -1;
+  const Eigen::Matrix3d turn = v * svd.matrixU().transpose();
   return (turn - Eigen::Matrix3d::Identity()).norm() / std::sqrt(2);
 }
 

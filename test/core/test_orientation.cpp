@@ -61,7 +61,7 @@ TEST_P(Orientation, IsKeptAndTheMessageNamesTheTriangle) {
   const auto kept = relaxed(pulledAcross(), true);
   EXPECT_EQ(most_folded_, 0);
   EXPECT_FALSE(kept.converged);
-  EXPECT_NE(kept.message.find("solid_angle_springs[0] would fold"), std::string::npos)
+  EXPECT_NE(kept.message.find("solid-angle spring 0 would fold"), std::string::npos)
       << kept.message;
   EXPECT_LT(kept.energy_after, 0.5 * kept.energy_before);
 }

@@ -115,8 +115,8 @@ TEST(Multigrid, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
 template <class Real>
 ModelMinimum minimumOf(const Matrix<Real>& matrix, Preconditioner<Real>& preconditioner,
                        const Eigen::VectorXd& gradient, double tolerance, int threads = 1) {
-  return minimise(matrix.pattern(), matrix.values, preconditioner, gradient, tolerance, 300,
-                  threads);
+  return minimise(matrix.pattern(), matrix.values, preconditioner, gradient,
+                  Eigen::VectorXd::Ones(gradient.size() / 2), tolerance, 300, threads);
 }
 
 // From 642 particles to 40,962.

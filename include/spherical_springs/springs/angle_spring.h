@@ -13,6 +13,7 @@ struct AngleSpring {
   static constexpr std::size_t kParticles = 2;
   static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
   static constexpr const char* kTable = "angle_springs";
+  static constexpr const char* kName = "angle spring";  ///< in messages, before an id
 
   std::array<std::uint32_t, kParticles> particles{};
   double rest_angle = 0;  ///< [rad]

@@ -15,6 +15,7 @@ struct OrientedAngleSpring {
   static constexpr std::size_t kParticles = 3;
   static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
   static constexpr const char* kTable = "oriented_angle_springs";
+  static constexpr const char* kName = "oriented-angle spring";  ///< in messages, before an id
 
   std::array<std::uint32_t, kParticles> particles{};
   double rest_angle = 0;  ///< [rad]; negative: at rest when seen clockwise

@@ -16,6 +16,7 @@ struct SolidAngleSpring {
   static constexpr std::size_t kParticles = 3;
   static constexpr std::size_t kCorners = 3;  ///< of a triangle
   static constexpr const char* kTable = "solid_angle_springs";
+  static constexpr const char* kName = "solid-angle spring";  ///< in messages, before an id
 
   std::array<std::uint32_t, kParticles> particles{};
   double rest_solid_angle = 0;  ///< [sr]

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <string>
+
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+/// The largest torque that a relaxation leaves on a free particle: one bound for all [N m], or a
+/// share of the stiffness that each particle feels, so that soft springs relax beside stiff ones.
+class TorqueLimit {
+ public:
+  /// `bound`: [N m]; 0: 1e-9 of the stiffness or, where that is less, what rounding of a condition
+  /// makes of the stiffness of the springs at the particle.
+  TorqueLimit(const System& system, double bound);
+
+  bool isRelative() const { return bound_ == 0; }
+
+  /// The bound for all particles, unless it is relative [N m].
+  double bound() const { return bound_; }
+
+  /// The bound on a particle that feels `stiffness` [N m/rad], by its index in the system.
+  double allowed(std::size_t particle, double stiffness) const {
+    constexpr double kShare = 1e-9;
+    return isRelative() ? std::max(kShare * stiffness, rounding_[particle]) : bound_;
+  }
+
+ private:
+  double bound_;
+  Eigen::VectorXd rounding_;  // of the torque on each particle [N m]; only where it is relative
+};
+
+/// The stiffness that each particle feels at `positions` [N m/rad]: half the trace of its block of
+/// the definite Hessian, 0 where no spring acts on it.
+Eigen::VectorXd feltStiffness(const System& system, const Points& positions);
+
+/// The torque that `limit` allows on each particle at `positions` [N m].
+Eigen::VectorXd allowedTorques(const System& system, const Points& positions,
+                               const TorqueLimit& limit);
+
+/// Tells which tolerance the torques at `positions` exceed, to go on a sentence: the bound for all,
+/// or the particle that exceeds its own by the largest factor, if one does.
+std::string excessInWords(const System& system, const Points& positions, const TorqueLimit& limit);
+
+/// `torque` as a multiple of what is allowed, in one unit; above 1 where it is too large.
+inline double excessOf(double torque, double allowed) { return torque == 0 ? 0 : torque / allowed; }
+
+}  // namespace spherical_springs::core
