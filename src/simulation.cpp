@@ -20,6 +20,12 @@ State startOf(const Scene& scene) {
   return state;
 }
 
+bool anyOf(const SpringIds& ids) {
+  bool any = false;
+  forEachKind([&](auto kind) { any = any || !ids.get<typename decltype(kind)::type>().empty(); });
+  return any;
+}
+
 }  // namespace
 
 Simulation::Simulation(const Settings& settings)
@@ -35,6 +41,7 @@ const State& Simulation::state() const {
 State& Simulation::changeState() {
   state();
   integrator_has_state_ = false;
+  ++revision_;
   return state_;
 }
 
@@ -46,6 +53,7 @@ void Simulation::changed() {
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {
+  if (particles.empty()) return {};
   const auto before = state().positions.cols();
   const auto count = before + static_cast<Eigen::Index>(particles.size());
   State grown = state_;
@@ -60,13 +68,14 @@ std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> partic
 
 void Simulation::setParticles(const std::vector<std::uint32_t>& ids,
                               std::vector<Particle> particles) {
-  for (const std::size_t i : scene_.setParticles(ids, std::move(particles))) {
-    place(scene_.particles().item(i), i, changeState());
-  }
+  const auto indices = scene_.setParticles(ids, std::move(particles));
+  if (indices.empty()) return;
+  for (const std::size_t i : indices) place(scene_.particles().item(i), i, changeState());
   changed();
 }
 
 std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
+  if (ids.empty()) return 0;
   const Scene::Removal removal = scene_.removeParticles(ids);
   State& state = changeState();
   Eigen::Index kept = 0;
@@ -84,36 +93,36 @@ std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
 
 SpringIds Simulation::addSprings(SpringLists springs) {
   SpringIds ids = scene_.addSprings(std::move(springs), state().positions);
-  changed();
+  if (anyOf(ids)) changed();
   return ids;
 }
 
 void Simulation::setSprings(const SpringIds& ids, SpringLists springs) {
   scene_.setSprings(ids, std::move(springs), state().positions);
-  changed();
+  if (anyOf(ids)) changed();
 }
 
 void Simulation::removeSprings(const SpringIds& ids) {
   scene_.removeSprings(ids);
-  changed();
+  if (anyOf(ids)) changed();
 }
 
 void Simulation::clear() {
   scene_.clear();
-  begin(startOf(scene_));
+  beginAt(startOf(scene_));
 }
 
-void Simulation::reset() { begin(startOf(scene_)); }
+void Simulation::reset() { beginAt(startOf(scene_)); }
 
 void Simulation::load(SceneFile file) {
   State start = startOf(file.scene);
   start.time = file.time;
   file.scene.reserveIdsOf(scene_);
   scene_ = std::move(file.scene);
-  begin(std::move(start));
+  beginAt(std::move(start));
 }
 
-void Simulation::begin(State start) {
+void Simulation::beginAt(State start) {
   changeState() = std::move(start);
   changed();
 }
@@ -125,11 +134,13 @@ void Simulation::step(std::uint64_t steps) {
   }
   if (!integrator_has_state_) integrator_->take(state_);
   integrator_has_state_ = true;
-  integrator_is_ahead_ = true;
   integrator_->advance(steps);
+  integrator_is_ahead_ = true;
+  ++revision_;
 }
 
 void Simulation::settle(const Points& positions) {
+  if (state().angular_velocities.isZero(0) && state_.positions == positions) return;
   State& state = changeState();
   state.positions = positions;
   state.angular_velocities.setZero();
@@ -137,9 +148,10 @@ void Simulation::settle(const Points& positions) {
   account_.reset();
 }
 
-void Simulation::restore(State state, std::shared_ptr<Account> account) {
-  changeState() = std::move(state);
-  account_ = std::move(account);
+void Simulation::restore(State state) {
+  state_ = std::move(state);
+  integrator_is_ahead_ = integrator_has_state_ = false;
+  ++revision_;
 }
 
 Scene Simulation::presentScene() const {
@@ -155,6 +167,13 @@ std::shared_ptr<const System> Simulation::system() {
 
 std::shared_ptr<Account> Simulation::account() {
   if (!account_) account_ = std::make_shared<Account>(*system(), state());
+  return account_;
+}
+
+std::shared_ptr<Account> Simulation::begin(std::shared_ptr<Account> account,
+                                           std::uint64_t revision) {
+  if (revision != revision_) return account;
+  if (!account_) account_ = std::move(account);
   return account_;
 }
 

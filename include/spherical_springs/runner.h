@@ -33,6 +33,7 @@ enum class Activity { none, stepping, relaxing };
 /// Steps and relaxes a simulation, and lets others read it meanwhile: stepping pauses for them
 /// every few milliseconds; a relaxation works on a copy, on a thread of its own, and shows how far
 /// it has come. Changes are refused until either ends. All functions may be called from any thread.
+/// A call that throws has changed nothing.
 class Runner {
  public:
   Runner(const Simulation::Settings& settings, bool running)
@@ -66,11 +67,11 @@ class Runner {
   /// @return how many were done. @throw std::runtime_error unless paused and idle.
   std::uint64_t step(std::uint64_t steps);
 
-  /// @throw std::runtime_error while another is under way, std::invalid_argument for bad options,
-  /// with nothing changed.
+  /// @throw std::runtime_error while another is under way, std::invalid_argument for bad options.
   RelaxationResult relax(const RelaxationOptions& options);
 
-  /// Ends a step or relaxation under way at its best state so far, at rest.
+  /// Ends a step or relaxation under way at its best state so far, at rest. Never waits for it, nor
+  /// for a change of the scene.
   /// @return whether there was one.
   bool cancel();
 
@@ -79,7 +80,7 @@ class Runner {
 
   /// How things stand, to be measured at leisure without holding anything up.
   struct Snapshot {
-    State state;
+    State state;  ///< of a relaxation under way, the best so far
     std::shared_ptr<const System> system;
     std::shared_ptr<Account> account;
     bool running;
@@ -93,28 +94,34 @@ class Runner {
   class Busy;
   struct Work;
 
-  /// What a relaxation starts from, and goes back to if it fails.
-  struct Beginning {
-    State state;
-    std::shared_ptr<const System> system;
-    std::shared_ptr<Account> account;
-  };
-
   void requireIdle() const;
-  Beginning beginning();
-  void show(const RelaxationResult& best, double fraction);
+  Activity activity() const;
+  std::shared_ptr<Work> beginning(const RelaxationOptions& options);
+  bool awaitLastWorker();
+  RelaxationResult await(Work& work);
+  void show(const std::shared_ptr<const RelaxationResult>& best, double fraction);
+  void settle(const Points& positions);
   std::uint64_t stepForASlice(std::uint64_t most);
 
-  FairMutex mutex_;  // guards what follows, but for the atomic
+  FairMutex mutex_;  // guards the next two
   Simulation simulation_;
+  double step_wall_time_ = 0;
+
+  // Guards what follows, is locked after mutex_ where both are, and never held for long, so that a
+  // cancel is answered while a large scene is changed. An activity begins under mutex_ too: what
+  // holds mutex_ and finds none may go on.
+  mutable std::mutex control_;
   bool running_;
   bool closed_ = false;
   Activity activity_ = Activity::none;
+  std::shared_ptr<const RelaxationResult> shown_;  // null unless a relaxation has got somewhere
   double relax_progress_ = 0;
-  double step_wall_time_ = 0;
-  std::atomic<bool> cancelled_{false};
+
+  std::atomic<bool> cancelled_{false};  // set under control_
+
   // Used by the one caller whose relaxation is under way, and by its worker.
   Relaxer relaxer_;
+  std::shared_ptr<Work> last_work_;
   std::thread worker_;
 };
 

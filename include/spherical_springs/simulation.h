@@ -15,7 +15,7 @@
 namespace spherical_springs::core {
 
 /// For one thread at a time. Changing functions throw what Scene's throw, or std::bad_alloc, and
-/// then change nothing; each begins the account of energy anew.
+/// then change nothing; each that changes something begins the account of energy anew.
 class Simulation {
  public:
   struct Settings {
@@ -38,14 +38,15 @@ class Simulation {
   void reset();               ///< Every particle where it was last added or set, time 0.
   void load(SceneFile file);  ///< In place of the present scene.
 
-  /// Steps of the settings' time step.
+  /// Steps of the settings' time step: all of them, or none where memory runs out.
   void step(std::uint64_t steps = 1);
 
-  /// Puts the particles, at rest, where a relaxation has brought them.
+  /// Puts the particles, at rest, where a relaxation has brought them. Changes nothing, not even
+  /// the account, where they are there and at rest already.
   void settle(const Points& positions);
 
-  /// Puts back an earlier state of the same scene, and the account that it belongs to.
-  void restore(State state, std::shared_ptr<Account> account);
+  /// Puts back an earlier state of the same scene.
+  void restore(State state);
 
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return scene_; }
@@ -54,11 +55,21 @@ class Simulation {
 
   std::shared_ptr<const System> system();
   std::shared_ptr<Account> account();
-  std::shared_ptr<Account> begunAccount() const { return account_; }  ///< none before first use
+
+  /// The account without making it: null until something has asked for it.
+  std::shared_ptr<Account> begunAccount() const { return account_; }
+
+  /// A number that changes with everything that moves or changes the scene.
+  std::uint64_t revision() const { return revision_; }
+
+  /// Offers an account that was made of the state at `revision`.
+  /// @return the account of that state: the one there was, or the one offered, which is taken
+  /// unless the state has changed since.
+  std::shared_ptr<Account> begin(std::shared_ptr<Account> account, std::uint64_t revision);
 
  private:
   State& changeState();
-  void begin(State start);
+  void beginAt(State start);
   void changed();
 
   Settings settings_;
@@ -70,6 +81,7 @@ class Simulation {
   std::shared_ptr<const System> system_;
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<Account> account_;
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace spherical_springs::core

@@ -1,30 +1,48 @@
-// Memory that runs out at any allocation of a change leaves the scene as it was.
+// Memory that runs out at any allocation of a call leaves everything as it was.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
+#include <future>
 #include <new>
 #include <sstream>
+#include <thread>
 
-#include "scenes.h"
+#include "relaxation_scenes.h"
+#include "spherical_springs/runner.h"
 #include "spherical_springs/simulation.h"
 
 namespace {
 
-thread_local long allocations_left = -1;  // below zero: no bound
+// Counted down by allocations; the one that finds 0 fails. Below zero: no bound.
+thread_local long allocations_left = -1;          // of this thread
+std::atomic<long> allocations_left_anywhere{-1};  // of all threads
+std::atomic<bool> later_ones_fail_too{false};
+
+thread_local bool is_victim = false;
+std::atomic<bool> victims_fail{false};
+
+bool fails() {
+  if (is_victim && victims_fail) return true;
+  if (allocations_left >= 0 && allocations_left-- == 0) return true;
+  long left = allocations_left_anywhere;
+  while (left >= 0) {
+    if (left == 0 && later_ones_fail_too) return true;
+    if (allocations_left_anywhere.compare_exchange_weak(left, left - 1)) return left == 0;
+  }
+  return false;
+}
 
 }  // namespace
 
 extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
 
-// The C library's own, but for one that fails when it is told to.
-extern "C" void* malloc(std::size_t size) {
-  if (allocations_left == 0) {
-    allocations_left = -1;
-    return nullptr;
-  }
-  if (allocations_left > 0) --allocations_left;
-  return __libc_malloc(size);
+// The C library's own, but for those that fail when they are told to.
+extern "C" void* malloc(std::size_t size) { return fails() ? nullptr : __libc_malloc(size); }
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return fails() ? nullptr : __libc_memalign(alignment, size);
 }
 
 namespace spherical_springs::core {
@@ -120,6 +138,221 @@ TEST_F(OutOfMemory, WhileASceneIsReset) {
 
 TEST_F(OutOfMemory, WhileASceneIsLoaded) {
   expectAllOrNothing([this](Simulation& s) { s.load({testing::randomScene(2, 20, 5), 3.}); });
+}
+
+/// Lets allocations of all threads fail.
+class ShortOfMemory : public ::testing::Test {
+ protected:
+  ~ShortOfMemory() override { allocations_left_anywhere = -1; }
+
+  /// Lets the allocation at `number` of a call fail, on whatever thread it is, and all later ones
+  /// where `for_good`.
+  /// @return whether the call threw for it.
+  template <class Call>
+  static bool fails(long number, bool for_good, const Call& call) {
+    later_ones_fail_too = for_good;
+    allocations_left_anywhere = number;
+    bool failed = false;
+    try {
+      call();
+    } catch (const std::bad_alloc&) {
+      failed = true;
+    } catch (const std::system_error&) {  // of a thread that could not be started
+      failed = true;
+    }
+    allocations_left_anywhere = -1;
+    return failed;
+  }
+
+  /// Calls once for each allocation that may fail, later ones at growing distances, with `check`
+  /// after each failure, until a call succeeds.
+  /// @return how often it failed.
+  template <class Call, class Check>
+  static int failAgainAndAgain(bool for_good, const Call& call, const Check& check) {
+    int failures = 0;
+    for (long number = 0; fails(number, for_good, call); number += 1 + number / 16) {
+      check("at allocation " + std::to_string(number));
+      ++failures;
+    }
+    return failures;
+  }
+};
+
+struct Stepping {
+  IntegrationMethod method;
+  int threads;
+  double spring_damping, particle_damping;
+};
+
+void PrintTo(const Stepping& stepping, std::ostream* out) {
+  *out << "method " << static_cast<int>(stepping.method) << " on " << stepping.threads
+       << " threads, damping " << stepping.spring_damping << " and " << stepping.particle_damping;
+}
+
+class SteppingShortOfMemory : public ShortOfMemory, public ::testing::WithParamInterface<Stepping> {
+ protected:
+  static constexpr int kSteps = 2;
+
+  /// Large enough that threads share the loops over it.
+  static Scene scene() {
+    const Scene still = testing::randomScene(1, 1200, 1500, GetParam().spring_damping, 1);
+    auto particles = still.particles().items();
+    for (Particle& particle : particles) particle.damping = GetParam().particle_damping;
+    return testing::sceneOf(particles, testing::springsOf(still));
+  }
+
+  static Simulation simulation() {
+    Simulation::Settings settings;
+    settings.method = GetParam().method;
+    settings.system.threads = GetParam().threads;
+    Simulation simulation(settings);
+    simulation.load({scene(), 0});
+    return simulation;
+  }
+
+  static void expectSame(const State& state, const State& before, const std::string& where) {
+    ASSERT_EQ(state.positions, before.positions) << where;
+    ASSERT_EQ(state.angular_velocities, before.angular_velocities) << where;
+    ASSERT_EQ(state.steps, before.steps) << where;
+    ASSERT_EQ(state.dissipated, before.dissipated) << where;
+  }
+};
+
+TEST_P(SteppingShortOfMemory, ChangesNothingAndGoesOn) {
+  Simulation undisturbed = simulation();
+  const State start = undisturbed.state();
+  undisturbed.step(kSteps);
+  for (const bool for_good : {false, true}) {
+    Simulation disturbed = simulation();
+    const auto step = [&] { disturbed.step(kSteps); };
+    const int failures = failAgainAndAgain(for_good, step, [&](const std::string& where) {
+      expectSame(disturbed.state(), start, where);
+    });
+    EXPECT_GT(failures, 10);
+    expectSame(disturbed.state(), undisturbed.state(), "at the end");
+  }
+}
+
+// A step of a simulation that has stepped before needs no memory of a thread that has not.
+TEST_P(SteppingShortOfMemory, ChangesNothingOnANewThread) {
+  Simulation undisturbed = simulation(), disturbed = simulation();
+  undisturbed.step(kSteps);
+  disturbed.step(kSteps);
+  const auto step = [&] { std::thread([&] { disturbed.step(kSteps); }).join(); };
+  bool failed = false;
+  std::thread([&] { failed = fails(0, true, [&] { disturbed.step(kSteps); }); }).join();
+  if (failed) {
+    expectSame(disturbed.state(), undisturbed.state(), "after a failure");
+    step();
+  }
+  undisturbed.step(kSteps);
+  expectSame(disturbed.state(), undisturbed.state(), "at the end");
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, SteppingShortOfMemory,
+                         ::testing::Values(Stepping{IntegrationMethod::verlet, 1, 0, 0},
+                                           Stepping{IntegrationMethod::verlet, 2, 0, 0},
+                                           Stepping{IntegrationMethod::verlet, 2, 0, 0.3},
+                                           Stepping{IntegrationMethod::euler, 2, 0.3, 0},
+                                           Stepping{IntegrationMethod::verlet, 2, 1e4, 1e4},
+                                           Stepping{IntegrationMethod::fourth_order, 2, 1e4, 0.3},
+                                           Stepping{IntegrationMethod::implicit_euler, 2, 0.3,
+                                                    0.3}));
+
+struct Relaxing {
+  RelaxationMethod method;
+  int level;  ///< of the mesh: 4 is large enough that threads share the loops over it
+};
+
+void PrintTo(const Relaxing& relaxing, std::ostream* out) {
+  *out << "method " << static_cast<int>(relaxing.method) << ", level " << relaxing.level;
+}
+
+class RunnerShortOfMemory : public ShortOfMemory, public ::testing::WithParamInterface<Relaxing> {
+ protected:
+  RunnerShortOfMemory() {
+    runner_.change([](Simulation& s) { s.load({testing::membraneScene(GetParam().level), 0}); });
+  }
+
+  static Simulation::Settings settings() {
+    Simulation::Settings settings;
+    settings.system.threads = 2;
+    return settings;
+  }
+
+  static RelaxationOptions options(double tolerance = 0) {
+    RelaxationOptions options;
+    options.method = GetParam().method;
+    options.tolerance = tolerance;
+    return options;
+  }
+
+  Points positions() {
+    return runner_.read([](const Simulation& s) { return s.state().positions; });
+  }
+
+  Runner runner_{settings(), false};
+};
+
+TEST_P(RunnerShortOfMemory, RelaxesAllOrNothing) {
+  const Points start = positions();
+  ASSERT_TRUE(runner_.relax(options()).converged);
+  const Points end = positions();
+  for (const bool for_good : {false, true}) {
+    runner_.change([](Simulation& s) { s.reset(); });
+    const auto relax = [&] { runner_.relax(options()); };
+    const int failures = failAgainAndAgain(for_good, relax, [&](const std::string& where) {
+      ASSERT_EQ(positions(), start) << where;
+      ASSERT_EQ(runner_.snapshot().activity, Activity::none);
+    });
+    EXPECT_GT(failures, 20);
+    EXPECT_EQ(positions(), end);
+  }
+}
+
+TEST_P(RunnerShortOfMemory, TakesASnapshotOrNone) {
+  const Points start = positions();
+  runner_.change([](Simulation& s) { s.reset(); });
+  const int failures = failAgainAndAgain(
+      true, [&] { runner_.snapshot(); },
+      [&](const std::string& where) { ASSERT_EQ(positions(), start) << where; });
+  EXPECT_GT(failures, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachMethod, RunnerShortOfMemory,
+                         ::testing::Values(Relaxing{RelaxationMethod::newton, 4},
+                                           Relaxing{RelaxationMethod::newton, 1},
+                                           Relaxing{RelaxationMethod::dynamics, 1},
+                                           Relaxing{RelaxationMethod::fire, 1}));
+
+// A call whose answer cannot be copied ends its relaxation all the same.
+TEST(CancelledShortOfMemory, GoesOn) {
+  Runner runner({}, false);
+  runner.change([](Simulation& s) { s.load({testing::membraneScene(2), 0}); });
+  const auto positions = [&] {
+    return runner.read([](const Simulation& s) { return s.state().positions; });
+  };
+  const Points start = positions();
+  RelaxationOptions endless;
+  endless.method = RelaxationMethod::dynamics;
+  endless.tolerance = 1e-300;
+  bool threw = false;
+  std::thread caller([&] {
+    is_victim = true;
+    try {
+      runner.relax(endless);
+    } catch (const std::bad_alloc&) {
+      threw = true;
+    }
+  });
+  while (runner.snapshot().state.positions == start) std::this_thread::yield();
+  victims_fail = true;
+  runner.cancel();
+  caller.join();
+  victims_fail = false;
+  EXPECT_TRUE(threw);
+  EXPECT_EQ(positions(), start);
+  EXPECT_TRUE(runner.relax({}).converged);
 }
 
 TEST(Memory, OfASceneIsGivenBackWhenItIsCleared) {

@@ -94,6 +94,89 @@ TEST(Runner, GivesTheSameBitsWhateverReadsBeside) {
   EXPECT_EQ(positions[0], positions[1]);
 }
 
+/// Particles joined by many springs at random, which take long to relax.
+Scene knot(std::uint32_t particles) {
+  return testing::randomScene(6, particles, 3 * static_cast<int>(particles), 0, 0);
+}
+
+// A relaxation that is cancelled before its first iteration tells where the particles are.
+TEST(Runner, CancelledAtOnceTellsEnergyAndTorque) {
+  Runner runner({}, false);
+  fill(runner, knot(4000));
+  const auto start = runner.snapshot();
+  const double energy = energies(*start.system, start.state).potential();
+  const double torque = maxTorque(*start.system, start.state);
+  for (int i = 0; i < 6; ++i) {
+    auto answer = std::async(std::launch::async, [&] { return runner.relax({}); });
+    while (!runner.cancel()) std::this_thread::yield();
+    const RelaxationResult result = answer.get();
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.message.rfind("cancelled; largest torque", 0), 0) << result.message;
+    EXPECT_NEAR(result.energy_before, energy, 1e-9 * energy);
+    EXPECT_LE(result.energy_after, (1 + 1e-9) * energy);
+    EXPECT_GT(result.max_torque, 1e-6 * torque);
+    runner.change([](Simulation& s) { s.reset(); });
+  }
+}
+
+/// Whether no turn of the whole would bring `after` nearer to `before`.
+bool lieAsNearAsTheyCan(const Points& before, const Points& after) {
+  const Eigen::Matrix3d moments = after * before.transpose();
+  return (moments - moments.transpose()).norm() < 1e-9 * moments.norm();
+}
+
+TEST(Runner, DoesNotTurnTheWholeWhenCancelled) {
+  for (const auto method : {RelaxationMethod::newton, RelaxationMethod::dynamics}) {
+    Runner runner({}, false);
+    fill(runner, knot(300));
+    const Points start = runner.snapshot().state.positions;
+    RelaxationOptions options;
+    options.method = method;
+    options.tolerance = 1e-300;
+    auto answer = std::async(std::launch::async, [&] { return runner.relax(options); });
+    const auto moved = [&] {
+      return (runner.snapshot().state.positions - start).cwiseAbs().maxCoeff() > 0.1;
+    };
+    while (!moved()) std::this_thread::yield();
+    runner.cancel();
+    const RelaxationResult result = answer.get();
+    EXPECT_TRUE(lieAsNearAsTheyCan(start, result.positions)) << result.message;
+    EXPECT_EQ(runner.snapshot().state.positions, result.positions);
+  }
+}
+
+TEST(Runner, ShowsARelaxationUnderWayWithoutTouchingTheScene) {
+  Runner runner({}, false);
+  fill(runner, knot(300));
+  const Points start = runner.snapshot().state.positions;
+  RelaxationOptions options;
+  options.method = RelaxationMethod::dynamics;
+  options.tolerance = 1e-300;
+  auto answer = std::async(std::launch::async, [&] { return runner.relax(options); });
+  while (runner.snapshot().state.positions == start) std::this_thread::yield();
+  EXPECT_EQ(runner.read([](const Simulation& s) { return s.state().positions; }), start);
+  runner.cancel();
+  answer.get();
+}
+
+TEST(Simulation, ChangesOfNothingChangeNothing) {
+  Simulation simulation({});
+  const Scene random = testing::randomScene(7, 10, 10, 0.5, 1);
+  simulation.load({random, 0});
+  simulation.step(10);
+  const double dissipated = simulation.state().dissipated;
+  const auto account = simulation.account();
+  simulation.addParticles({});
+  simulation.setParticles({}, {});
+  simulation.removeParticles({});
+  simulation.addSprings({});
+  simulation.setSprings({}, {});
+  simulation.removeSprings({});
+  EXPECT_GT(dissipated, 0);
+  EXPECT_EQ(simulation.state().dissipated, dissipated);
+  EXPECT_EQ(simulation.account(), account);
+}
+
 TEST(Runner, ABadRequestToRelaxChangesNothing) {
   Runner runner({}, false);
   fill(runner, testing::randomScene(3, 10, 10, 0, 1));
