@@ -18,6 +18,8 @@ inline int worthwhileThreads(std::ptrdiff_t count, int threads) {
 }
 
 /// Calls `body(i)` for i from 0 to `count` - 1 on up to `threads` threads.
+/// @throw what a body throws, the first one on any thread; bodies are left out then, but none is
+/// still under way.
 template <class Body>
 void forOnThreads(std::ptrdiff_t count, int threads, const Body& body) {
   constexpr std::ptrdiff_t kPartsEach = 4;  // of which a thread may leave some to others
@@ -65,8 +67,7 @@ double parallelSum(std::ptrdiff_t count, int threads, const Term& term) {
 /// The largest `term(i)` for i from 0 to `count` - 1, or 0.
 template <class Term>
 double parallelLargest(std::ptrdiff_t count, int threads, const Term& term) {
-  return parallelFold(count, threads, 0., term,
-                      [](double a, double b) { return std::max(a, b); });
+  return parallelFold(count, threads, 0., term, [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace spherical_springs::core

@@ -1,9 +1,8 @@
-// Everything that clients, timers and topics do with a runner, at once, and the threads that share
-// its loops; scripts/thread_sanitizer runs it under ThreadSanitizer too.
+// Everything that clients, timers and topics do with a runner, at once; scripts/thread_sanitizer
+// runs it under ThreadSanitizer too.
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <ostream>
@@ -11,7 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include "parallel.h"
 #include "scenes.h"
 #include "spherical_springs/measures.h"
 #include "spherical_springs/runner.h"
@@ -137,37 +135,6 @@ TEST_P(Concurrency, OfClosingAndAllElse) {
 INSTANTIATE_TEST_SUITE_P(OfARunner, Concurrency,
                          ::testing::Values(Crowd{1, 60, 150, 1000}, Crowd{2, 4200, 10, 10},
                                            Crowd{3, 4200, 10, 10}));
-
-TEST(Workers, DoEveryPartOnce) {
-  for (const std::ptrdiff_t count : {0, 1, 2, 5, 1000, 5000}) {
-    for (const int threads : {1, 2, 3, 8}) {
-      std::vector<int> done(count, 0);
-      forOnThreads(count, threads, [&](std::ptrdiff_t i) { ++done[i]; });
-      EXPECT_EQ(done, std::vector<int>(count, 1)) << count << " on " << threads << " threads";
-    }
-  }
-}
-
-TEST(Workers, ServeSeveralCallersAtOnce) {
-  constexpr int kLoops = 2000;
-  std::vector<std::thread> callers;
-  for (int caller = 0; caller < 4; ++caller) {
-    callers.emplace_back([caller] {
-      std::vector<std::ptrdiff_t> places(500);
-      for (int loop = 0; loop < kLoops; ++loop) {
-        const std::ptrdiff_t offset = loop + caller;
-        forOnThreads(places.size(), 2 + loop % 3,
-                     [&](std::ptrdiff_t i) { places[i] = i + offset; });
-        std::ptrdiff_t sum = 0;
-        for (const std::ptrdiff_t place : places) sum += place - offset;
-        ASSERT_EQ(sum, 499 * 500 / 2);
-        // Long enough for the pool to fall asleep.
-        if (loop % 100 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      }
-    });
-  }
-  for (std::thread& caller : callers) caller.join();
-}
 
 }  // namespace
 }  // namespace spherical_springs::core
