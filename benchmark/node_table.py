@@ -14,7 +14,7 @@ def parser_of(description):
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("scenes", nargs="+", help="scene files, all in one directory")
     parser.add_argument("--runs", type=int, default=5, help="of which the median is taken")
-    parser.add_argument("--threads", type=int, default=0, help="of the node; 0: all cores")
+    parser.add_argument("--threads", type=int, default=0, help="of the node; 0: as many as it may use")
     parser.add_argument("--log", default=os.devnull, help="where the node's output goes")
     return parser
 

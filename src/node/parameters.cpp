@@ -2,7 +2,8 @@
 
 #include <sstream>
 #include <stdexcept>
-#include <thread>
+
+#include "../available_threads.h"
 
 namespace spherical_springs {
 namespace {
@@ -95,8 +96,7 @@ core::Simulation::Settings Parameters::simulation() const {
   settings.time_step = time_step;
   settings.system.spring_damping =
       spring_damping == "own" ? core::SpringDamping::own : core::SpringDamping::relative;
-  settings.system.threads =
-      threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  settings.system.threads = threads > 0 ? threads : core::availableThreads();
   settings.limits.particles = max_particles;
   settings.limits.springs = max_springs;
   return settings;

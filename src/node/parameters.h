@@ -20,7 +20,7 @@ struct Parameters {
   std::string frame_id = "map";             ///< of poses, energies and markers
   double radius = 1;                        ///< of the published poses and markers [m]
   std::string scene;                        ///< a file to load at start; empty: none
-  int threads = 0;                          ///< 0: all cores
+  int threads = 0;                          ///< 0: core::availableThreads()
   std::string spring_damping = "relative";  ///< "relative", "own"
   int max_particles = 20'000'000;
   int max_springs = 100'000'000;

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <iostream>
 #include <stdexcept>
-#include <thread>
 
+#include "../available_threads.h"
 #include "../files.h"
 #include "face_files.h"
 #include "interruption.h"
@@ -60,7 +60,7 @@ Points mapOf(const Task& task, const Options& asked) {
   mesh::MapOptions options;
   options.angle_weight = asked.angle_weight;
   options.max_time = Times(task.surface.vertices.cols()).map;
-  options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.threads = core::availableThreads();
   ProgressLine progress("mapping");
   options.go_on = [&](double fraction) {
     progress.show(fraction);
