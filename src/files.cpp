@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -13,33 +14,83 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts what was written to a file, or to a directory's list of names, on the disk.
-/// @param whose the file that it is written for
-void flushToDisk(const fs::path& path, const fs::path& whose) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool done = file >= 0 && ::fsync(file) == 0;
-  const int reason = errno;
-  if (file >= 0) ::close(file);
-  errno = reason;
-  if (!done) failTo("write", whose);
+[[noreturn]] void throwLastFault() {
+  throw fs::filesystem_error("", std::error_code(errno, std::system_category()));
 }
 
-/// A name that no other writing has, in this process or another.
-fs::path partOf(const fs::path& path) {
-  static std::atomic<unsigned> writings{0};
-  return path.string() + ".part" + std::to_string(::getpid()) + "-" + std::to_string(writings++);
+/// Whether `reason`, an error number, says that the file system does not know how to flush.
+bool meansNoFlushing(int reason) {
+  return reason == EINVAL || reason == ENOTSUP || reason == ENOSYS;
 }
 
-void writePart(const fs::path& part, const fs::path& path,
-               const std::function<void(std::ostream&)>& write) {
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  if (!out) failTo("write", path);
-  write(out);
-  out.close();
-  if (!out) failTo("write", path);
-  flushToDisk(part, path);
-  fs::rename(part, path);
+/// Puts a directory's list of names on the disk, where the system lets it: everybody sees the names
+/// already, so no answer is a failure.
+void flushNames(const fs::path& directory) {
+  const int file = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
 }
+
+fs::path directoryOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
+/// A file beside another whose place it is to take, under a short name that nothing else has. It is
+/// gone in the end unless it has taken that place.
+class Part {
+ public:
+  explicit Part(const fs::path& target)
+      : target_(target), replaces_(::stat(target.c_str(), &replaced_) == 0) {
+    static std::atomic<unsigned> parts{0};
+    constexpr ::mode_t kMine = 0600, kEverybodys = 0666;  // the latter less the umask
+    constexpr int kMostTries = 1000;
+    for (int i = 0; file_ < 0; ++i) {
+      path_ = directoryOf(target) / ("spherical_springs.part" + std::to_string(::getpid()) + "-" +
+                                     std::to_string(parts++));
+      file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                     replaces_ ? kMine : kEverybodys);
+      if (file_ < 0 && (errno != EEXIST || i == kMostTries)) throwLastFault();
+    }
+  }
+  ~Part() {
+    ::close(file_);
+    if (!in_place_) ::unlink(path_.c_str());
+  }
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  void write(const std::function<void(std::ostream&)>& write) const {
+    std::ofstream out(path_, std::ios::binary);
+    if (!out) throwLastFault();
+    write(out);
+    out.close();
+    if (!out) throwLastFault();
+  }
+
+  void takePlace() {
+    if (replaces_) keepOwnerAndPermissions();
+    if (::fsync(file_) != 0 && !meansNoFlushing(errno)) throwLastFault();
+    fs::rename(path_, target_);
+    in_place_ = true;
+  }
+
+ private:
+  /// As far as the system lets it: a user cannot give files to others.
+  void keepOwnerAndPermissions() const {
+    constexpr ::uid_t kAsItIs = -1;
+    constexpr ::mode_t kPermissions = 0777;
+    static_cast<void>(::fchown(file_, replaced_.st_uid, replaced_.st_gid) == 0 ||
+                      ::fchown(file_, kAsItIs, replaced_.st_gid) == 0);
+    ::fchmod(file_, replaced_.st_mode & kPermissions);
+  }
+
+  fs::path target_, path_;
+  struct stat replaced_;
+  bool replaces_;
+  int file_ = -1;
+  bool in_place_ = false;
+};
 
 bool isThereAndNoFile(const fs::path& path) {
   return fs::exists(path) && !fs::is_regular_file(path);
@@ -52,6 +103,18 @@ void failTo(const std::string& what, const fs::path& path) {
                            std::system_category().message(errno));
 }
 
+fs::path linksFollowed(fs::path path) {
+  constexpr int kMostLinks = 40;  // as Linux has it
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path)); ++links) {
+    if (links == kMostLinks) {
+      throw fs::filesystem_error("", path,
+                                 std::make_error_code(std::errc::too_many_symbolic_link_levels));
+    }
+    path = path.parent_path() / fs::read_symlink(path);
+  }
+  return path;
+}
+
 std::ifstream openToRead(const fs::path& path) {
   if (orFailTo("read", path, [&] { return isThereAndNoFile(path); })) {
     throw std::runtime_error("cannot read " + onOneLine(path) + ": not a file");
@@ -62,18 +125,16 @@ std::ifstream openToRead(const fs::path& path) {
 }
 
 void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  if (orFailTo("write", path, [&] { return isThereAndNoFile(path); })) {
-    throw std::runtime_error("cannot write " + onOneLine(path) + ": not a file");
-  }
-  const fs::path part = partOf(path);
-  try {
-    orFailTo("write", path, [&] { writePart(part, path, write); });
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(part, ignored);
-    throw;
-  }
-  flushToDisk(path.has_parent_path() ? path.parent_path() : ".", path);
+  orFailTo("write", path, [&] {
+    const fs::path target = linksFollowed(path);
+    if (isThereAndNoFile(target)) {
+      throw std::runtime_error("cannot write " + onOneLine(path) + ": not a file");
+    }
+    Part part(target);
+    part.write(write);
+    part.takePlace();
+    flushNames(directoryOf(target));
+  });
 }
 
 }  // namespace spherical_springs::core

@@ -28,8 +28,13 @@ auto orFailTo(const std::string& what, const std::filesystem::path& path, const 
 /// @throw std::runtime_error for what is not a regular file, or cannot be read.
 std::ifstream openToRead(const std::filesystem::path& path);
 
-/// Writes a file beside `path`, puts it on the disk, and gives it that name: what was there before
-/// stays until then, and for good where anything fails.
+/// The file that the symbolic links at the end of `path` lead to, whether it exists or not.
+/// @throw std::filesystem::filesystem_error for links that lead round in circles.
+std::filesystem::path linksFollowed(std::filesystem::path path);
+
+/// Writes a file beside the one that `path` leads to, puts it on the disk, and gives it that name:
+/// what was there before stays until then, and for good where anything fails. The new file has the
+/// permissions of the old one, and its owner and group where the system allows it.
 /// @throw std::runtime_error for what is there and no regular file, where the file cannot be
 /// written, or what `write` throws.
 void replaceFile(const std::filesystem::path& path,

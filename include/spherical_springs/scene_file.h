@@ -24,9 +24,9 @@ SceneFile readScene(const std::filesystem::path& path, SceneLimits limits);
 /// The same from a stream that can tell its position.
 SceneFile readScene(std::istream& in, SceneLimits limits);
 
-/// Writes beside `path` and renames, so that `path` is whole at any moment, whoever else writes it.
-/// Reading the file gives the same scene to the last bit. A process that is killed meanwhile leaves
-/// a file `path`.part* behind.
+/// Writes beside `path` and renames, so that `path` is whole at any moment, whoever else writes it;
+/// links are followed. Reading the file gives the same scene to the last bit. A process that is
+/// killed meanwhile leaves a file spherical_springs.part* behind in the same directory.
 /// @throw std::runtime_error when it cannot be written.
 void writeScene(const std::filesystem::path& path, const Scene& scene, double time);
 

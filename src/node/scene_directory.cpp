@@ -28,7 +28,7 @@ SceneDirectory::SceneDirectory(const std::string& directory) : directory_(direct
                  directory.substr(std::min<std::size_t>(2, directory.size()));
   }
   try {
-    directory_ = fs::weakly_canonical(fs::absolute(directory_));
+    directory_ = fs::weakly_canonical(core::linksFollowed(fs::absolute(directory_)));
     if (fs::exists(directory_) && !fs::is_directory(directory_)) {
       refuse(kParameter, directory, "a directory, or a name that is free");
     }
@@ -43,7 +43,7 @@ fs::path SceneDirectory::inside(const std::string& path) const {
   }
   if (path.empty()) refuse("path", path, "the name of a file");
   try {
-    fs::path whole = fs::weakly_canonical(directory_ / path);
+    fs::path whole = fs::weakly_canonical(core::linksFollowed(directory_ / path));
     const fs::path from_here = whole.lexically_relative(directory_);
     if (from_here.empty() || *from_here.begin() == "..") {
       refuse("path", path, "files inside " + core::onOneLine(directory_));

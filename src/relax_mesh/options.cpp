@@ -65,7 +65,9 @@ po::options_description described(Options& options) {
 
 /// What is to be written, none of it over anything that is read or written as well.
 void requireWritable(const Options& options) {
-  const auto whole = [](const fs::path& path) { return fs::weakly_canonical(fs::absolute(path)); };
+  const auto whole = [](const fs::path& path) {
+    return fs::weakly_canonical(core::linksFollowed(fs::absolute(path)));
+  };
   std::vector<fs::path> taken;
   for (const fs::path* read : {&options.mesh, &options.sphere, &options.density}) {
     if (read->empty()) continue;
@@ -75,7 +77,7 @@ void requireWritable(const Options& options) {
     if (!path.has_filename() || (fs::exists(path) && !fs::is_regular_file(path))) {
       refuse(option, path, "the name of a file");
     }
-    if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
+    if (!fs::is_directory(whole(path).parent_path())) {
       refuse(option, path, "a file in a directory that exists");
     }
     if (std::find(taken.begin(), taken.end(), whole(path)) != taken.end()) {

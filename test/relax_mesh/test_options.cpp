@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "relax_mesh/options.h"
 
@@ -97,6 +100,23 @@ TEST(Options, NameNothingTwice) {
   EXPECT_EQ("--uv is './b.obj'" + allowed, reasonAgainst({"--uv", "./b.obj"}));
   EXPECT_EQ("--metrics is 'a.obj'" + allowed, reasonAgainst({"--metrics", "a.obj"}));
   EXPECT_EQ("--output is 'b.obj'" + allowed, reasonAgainst({"--density", "b.obj"}));
+}
+
+TEST(Options, NameWhatLinksLeadTo) {
+  namespace fs = std::filesystem;
+  const fs::path directory =
+      fs::temp_directory_path() / ("spherical_springs_options_" + std::to_string(::getpid()));
+  fs::create_directory(directory);
+  fs::create_symlink("new.obj", directory / "link");
+  fs::create_symlink("nowhere/new.obj", directory / "lost");
+  const auto path = [&](const char* name) { return (directory / name).string(); };
+  EXPECT_EQ("taken", reasonAgainst({"--uv", path("link")}));
+  EXPECT_EQ("--metrics is '" + path("link") +
+                "'; allowed: a file of its own, not one that another option names",
+            reasonAgainst({"--uv", path("new.obj"), "--metrics", path("link")}));
+  EXPECT_EQ("--uv is '" + path("lost") + "'; allowed: a file in a directory that exists",
+            reasonAgainst({"--uv", path("lost")}));
+  fs::remove_all(directory);
 }
 
 }  // namespace

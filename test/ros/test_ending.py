@@ -39,7 +39,7 @@ class EndingTest(unittest.TestCase):
 
     def parts(self):
         """Files that a save has begun."""
-        return glob.glob(self.path + '.part*')
+        return glob.glob(os.path.join(self.directory, '*.part*'))
 
     def save_old_and_new(self):
         """Two contents of the file; it now has the first, and a node with the second is started by
