@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "spherical_springs/range.h"
@@ -16,7 +17,8 @@ namespace spherical_springs::core {
 
 using Json = nlohmann::json;
 
-/// The fields of one object as they come, each taken once; what is left at the end has no meaning.
+/// The fields of one object as they come, each given and taken once; what is left at the end has no
+/// meaning.
 class Fields {
  public:
   /// Begins an object; memory of the one before is used again.
@@ -25,16 +27,23 @@ class Fields {
     count_ = 0;
   }
 
-  /// Begins a field; one of the same name is forgotten.
+  /// Begins a field. @throw std::invalid_argument for one of a name that another has, and for one
+  /// of so many that some must be without meaning: each is compared with all others.
   void begin(const std::string& name) {
-    present_ = find(name.c_str());
-    if (present_ == nullptr) {
-      if (++count_ > fields_.size()) fields_.emplace_back();
-      present_ = &fields_[count_ - 1];
-      present_->name = name;
+    constexpr std::size_t kMost = 32;
+    if (find(name) != nullptr) {
+      throw std::invalid_argument(name_ + " has two fields " + quoted(name));
     }
+    if (count_ == kMost) {
+      throw std::invalid_argument(name_ + " has more than " + std::to_string(kMost) + " fields");
+    }
+    if (++count_ > fields_.size()) fields_.emplace_back();
+    present_ = &fields_[count_ - 1];
+    present_->name = name;
     present_->is_list = present_->taken = false;
   }
+  /// Whoever takes the parts of the field that was begun, it is not left at the end.
+  void leaveToOthers() { present_->taken = true; }
   void beginList() {
     present_->is_list = true;
     present_->list.clear();
@@ -124,7 +133,7 @@ class Fields {
     field->taken = true;
   }
 
-  Field* find(const char* name) {
+  Field* find(std::string_view name) {
     const auto end = fields_.begin() + static_cast<std::ptrdiff_t>(count_);
     const auto found =
         std::find_if(fields_.begin(), end, [&](const Field& f) { return f.name == name; });

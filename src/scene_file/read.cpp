@@ -1,6 +1,5 @@
 #include <cmath>
 #include <new>
-#include <set>
 #include <stdexcept>
 
 #include "../files.h"
@@ -62,10 +61,8 @@ class SceneEvents {
       return true;
     }
     field_ = name;
-    if (!seen_.insert(name).second) {
-      throw std::invalid_argument("the scene has two fields " + quoted(name));
-    }
-    if (!ItemLists::isList(name)) scene_.begin(name);
+    scene_.begin(name);
+    if (ItemLists::isList(name)) scene_.leaveToOthers();
     return true;
   }
 
@@ -162,7 +159,6 @@ class SceneEvents {
   ItemLists& lists_;
   int depth_ = kOutside;
   bool closed_ = false;
-  std::set<std::string> seen_;
   std::string field_;  // of the scene, which is being read
   Fields scene_, item_;
 };

@@ -147,6 +147,50 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
   }
 }
 
+TEST_F(SceneFiles, AreRefusedWhereAFieldIsGivenTwice) {
+  const std::string head = R"({"format": "spherical_springs scene 1", )";
+  const auto inItem = [&](const std::string& list, const std::string& item) {
+    return head + '"' + list + R"(": [)" + item + "]}";
+  };
+  const std::vector<std::pair<std::string, std::string>> table = {
+      {inItem("particles", R"({"position": [1, 0, 0], "mass": 1, "mass": 5})"),
+       "particles[0] has two fields 'mass'"},
+      {inItem("particles", R"({"position": [1, 0, 0], "mass": 1, "mass": 1})"),
+       "particles[0] has two fields 'mass'"},
+      {inItem("particles", R"({"position": [1, 0, 0], "mass": 1, "mass": 5})"),
+       "particles[0] has two fields 'mass'"},
+      {inItem("particles", R"({"position": [1, 0, 0], "position": [0, 1, 0]})"),
+       "particles[0] has two fields 'position'"},
+      {inItem("particles", R"({"position": [1, 0, 0]}, {"id": 1, "pinned": true, "id": 2)"),
+       "particles[1] has two fields 'id'"},
+      {inItem("angle_springs", R"({"particles": [0, 1], "rest_angle": 1, "rest_angle": 2})"),
+       "angle_springs[0] has two fields 'rest_angle'"},
+      {inItem("solid_angle_springs", R"({"particles": [0, 1, 2], "particles": [0, 1, 2]})"),
+       "solid_angle_springs[0] has two fields 'particles'"},
+      {inItem("oriented_angle_springs", R"({"width": 1, "at_rest": true, "at_rest": false})"),
+       "oriented_angle_springs[0] has two fields 'at_rest'"},
+      {head + R"("format": "spherical_springs scene 1"})", "the scene has two fields 'format'"},
+      {head + R"("time": 1, "time": 2})", "the scene has two fields 'time'"},
+      {head + R"("angle_springs": [], "particles": [], "angle_springs": []})",
+       "the scene has two fields 'angle_springs'"},
+  };
+  for (const auto& [text, reason] : table) {
+    EXPECT_NE(refusalOf(text).find(reason), std::string::npos) << text << "\n" << refusalOf(text);
+  }
+  EXPECT_EQ(refusalOf(inItem("particles", R"({"position": [1, 0, 0], "mass": 1},
+                                             {"position": [1, 0, 0], "mass": 5})")),
+            "not refused");
+}
+
+TEST_F(SceneFiles, AreRefusedAtTheFirstFieldThatIsTooMuch) {
+  std::string fields;
+  for (int i = 0; i < 100000; ++i) fields += "\"" + std::to_string(i) + "\": 1, ";
+  const std::string head = R"({"format": "spherical_springs scene 1", )";
+  EXPECT_NE(refusalOf(head + R"("particles": [{)" + fields).find("has more than 32 fields"),
+            std::string::npos);
+  EXPECT_NE(refusalOf(head + fields).find("the scene has more than 32 fields"), std::string::npos);
+}
+
 TEST_F(SceneFiles, AreRefusedWithTheByte) {
   const std::string head = R"({"format": "spherical_springs scene 1", "particles": [
     {"position": [1, 0, 0]}, )";
@@ -231,8 +275,8 @@ TEST_F(SceneFiles, ThatCannotBeReadOrWritten) {
   const fs::path nowhere = directory_ / "missing" / "scene.json";
   const fs::path too_long = directory_ / std::string(256, 'x');
   EXPECT_EQ(fault_of(too_long), "cannot read " + too_long.string() + ": File name too long");
-  for (const auto& [path, reason] : {std::pair{nowhere, "No such file or directory"},
-                                     {too_long, "File name too long"}}) {
+  for (const auto& [path, reason] :
+       {std::pair{nowhere, "No such file or directory"}, {too_long, "File name too long"}}) {
     try {
       writeScene(path, Scene(), 0);
       ADD_FAILURE() << "no fault: " << path;
