@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -119,7 +118,7 @@ inline void requireRoom(const std::string& what, std::size_t present, std::size_
 
 template <class Item>
 void requireFreeIds(const IdTable<Item>& table, std::size_t added, const std::string& what) {
-  if (added <= std::numeric_limits<std::uint32_t>::max() - table.nextId()) return;
+  if (added <= kLargestId + 1 - table.nextId()) return;
   throw std::invalid_argument(what + ": no ids are left");
 }
 
@@ -127,11 +126,10 @@ template <class Item>
 void requireRisingIds(const IdTable<Item>& table, const Ids& ids, const std::string& list) {
   std::uint64_t least = table.nextId();
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
-    if (ids[i] < least || ids[i] > kMost) {
+    if (ids[i] < least || ids[i] > kLargestId) {
       throw ItemFault(list, i,
                       "id is " + std::to_string(ids[i]) + "; allowed: " + std::to_string(least) +
-                          " to " + std::to_string(kMost) + ", rising");
+                          " to " + std::to_string(kLargestId) + ", rising");
     }
     least = std::uint64_t(ids[i]) + 1;
   }

@@ -9,6 +9,9 @@
 
 namespace spherical_springs::core {
 
+/// The largest id that an item may have.
+constexpr std::uint32_t kLargestId = 4294967294;
+
 /// Items under ids that are given in order from 0 and never used again.
 template <class Item>
 class IdTable {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "spherical_springs/id_table.h"
 #include "spherical_springs/range.h"
 #include "spherical_springs/sphere.h"
 
@@ -68,8 +70,7 @@ class Fields {
     takeIf(field, &Json::is_string, "a text", [&](const Json& j) { value = j.get<std::string>(); });
   }
   void take(const char* field, std::uint32_t& value) {
-    takeIf(field, &Json::is_number_unsigned, "an id",
-           [&](const Json& j) { value = toId(j, field); });
+    takeIf(field, &Json::is_number, kIds, [&](const Json& j) { value = toId(j, field); });
   }
   void take(const char* field, Vector3& value) {
     takeList(field, 3, "three numbers", [&](const std::vector<Json>& list) {
@@ -81,7 +82,7 @@ class Fields {
   }
   template <std::size_t N>
   void take(const char* field, std::array<std::uint32_t, N>& value) {
-    takeList(field, N, "ids", [&](const std::vector<Json>& list) {
+    takeList(field, N, kIds, [&](const std::vector<Json>& list) {
       for (std::size_t i = 0; i < N; ++i) value[i] = toId(list[i], field);
     });
   }
@@ -102,6 +103,8 @@ class Fields {
   }
 
  private:
+  static constexpr const char* kIds = "whole numbers from 0 to 4294967294";
+
   struct Field {
     std::string name;
     Json value;
@@ -141,10 +144,9 @@ class Fields {
   }
 
   std::uint32_t toId(const Json& json, const char* field) const {
-    if (!json.is_number_unsigned() || json.get<std::uint64_t>() > 0xfffffffeu) {
-      refuse(field, json, "ids from 0 to 4294967294");
-    }
-    return json.get<std::uint32_t>();
+    const double id = json.is_number() ? json.get<double>() : -1;
+    if (id < 0 || id > kLargestId || id != std::floor(id)) refuse(field, json, kIds);
+    return static_cast<std::uint32_t>(id);
   }
 
   [[noreturn]] void refuse(const char* field, const Json& json, const char* allowed) const {

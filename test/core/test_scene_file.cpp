@@ -98,6 +98,16 @@ TEST_F(SceneFiles, MayLeaveFieldsOut) {
   EXPECT_DOUBLE_EQ(file.scene.springs<AngleSpring>().item(0).rest_angle, kPi / 2);
 }
 
+TEST_F(SceneFiles, MayHaveWholeNumbersWrittenAsReals) {
+  std::ofstream(path_) << R"({"format": "spherical_springs scene 1",
+    "particles": [{"id": 2.0, "position": [1, 0, 0]}, {"id": 3e1, "position": [0, 1, 0]}],
+    "angle_springs": [{"id": 1.0, "particles": [2.0, 30.0], "stiffness": 2, "at_rest": true}]})";
+  const Scene scene = readScene(path_, {}).scene;
+  EXPECT_EQ(scene.particles().ids(), (std::vector<std::uint32_t>{2, 30}));
+  EXPECT_EQ(scene.springs<AngleSpring>().ids(), std::vector<std::uint32_t>{1});
+  EXPECT_EQ(scene.springs<AngleSpring>().item(0).particles, (std::array<std::uint32_t, 2>{2, 30}));
+}
+
 TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
   const std::string head = R"({"format": "spherical_springs scene 1", )";
   const std::vector<std::pair<std::string, std::string>> table = {
@@ -125,7 +135,15 @@ TEST_F(SceneFiles, AreRefusedWithThePlaceAndTheReason) {
            R"("particles": [{"id": 3, "position": [1, 0, 0]}, {"id": 3, "position": [1, 0, 0]}]})",
        "particles[1].id is 3; allowed: 4 to 4294967294, rising"},
       {head + R"("particles": [{"id": -1, "position": [1, 0, 0]}]})",
-       "particles[0].id is -1; allowed: an id"},
+       "particles[0].id is -1; allowed: whole numbers from 0 to 4294967294"},
+      {head + R"("particles": [{"id": 0.5, "position": [1, 0, 0]}]})",
+       "particles[0].id is 0.5; allowed: whole numbers from 0 to 4294967294"},
+      {head + R"("particles": [{"id": 4294967295, "position": [1, 0, 0]}]})",
+       "particles[0].id is 4294967295; allowed: whole numbers from 0 to 4294967294"},
+      {head + R"("particles": [{"id": [3], "position": [1, 0, 0]}]})",
+       "particles[0].id is [3]; allowed: whole numbers from 0 to 4294967294"},
+      {head + R"("angle_springs": [{"particles": [0, 1e300]}]})",
+       "angle_springs[0].particles is 1e+300; allowed: whole numbers from 0 to 4294967294"},
       {head + R"("particles": [{"position": [1e999, 0, 0]}]})", "the number 1e999 is too large"},
       {head + R"("angle_springs": [{"particles": [0, 1], "stiffness": 1}]})",
        "angle_springs[0].particles[0] is 0; allowed: the id of a particle"},
