@@ -169,6 +169,11 @@ Scene::Scene(SceneLimits limits, const Ids& particle_ids, std::vector<Particle> 
 }
 
 void Scene::reserveIdsOf(const Scene& earlier) {
+  requireIdsForOthers(particles_, earlier.particles_.nextId(), "particles");
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    requireIdsForOthers(springs_.get<Spring>(), earlier.springs<Spring>().nextId(), Spring::kTable);
+  });
   particles_.reserveIdsBelow(earlier.particles_.nextId());
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;

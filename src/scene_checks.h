@@ -118,14 +118,34 @@ inline void requireRoom(const std::string& what, std::size_t present, std::size_
 
 template <class Item>
 void requireFreeIds(const IdTable<Item>& table, std::size_t added, const std::string& what) {
-  if (added <= kLargestId + 1 - table.nextId()) return;
-  throw std::invalid_argument(what + ": no ids are left");
+  const std::uint32_t left = kLargestId + 1 - table.nextId();
+  if (added <= left) return;
+  throw std::invalid_argument(what + " to add are " + std::to_string(added) + ", and " +
+                              std::to_string(left) + " ids are left: the largest is " +
+                              std::to_string(kLargestId) +
+                              ", and none is given twice; they begin from 0 again after a new "
+                              "start");
+}
+
+/// Ids that were chosen, not given, must not use up those that are given later.
+template <class Item>
+void requireIdsForOthers(const IdTable<Item>& table, std::uint32_t given_before,
+                         const std::string& list) {
+  if (table.nextId() <= std::max(given_before, kLargestChosenId + 1)) return;
+  throw ItemFault(list, table.size() - 1,
+                  "id is " + std::to_string(table.ids().back()) + "; allowed: at most " +
+                      std::to_string(kLargestChosenId) +
+                      ", so that there are ids for what is added later");
 }
 
 template <class Item>
 void requireRisingIds(const IdTable<Item>& table, const Ids& ids, const std::string& list) {
   std::uint64_t least = table.nextId();
   for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (least > kLargestId) {
+      throw ItemFault(list, i,
+                      "id cannot follow " + std::to_string(kLargestId) + ", the largest there is");
+    }
     if (ids[i] < least || ids[i] > kLargestId) {
       throw ItemFault(list, i,
                       "id is " + std::to_string(ids[i]) + "; allowed: " + std::to_string(least) +

@@ -82,6 +82,8 @@ class Scene {
   void clear();
 
   /// Ids below those that `earlier` has given will not be given here.
+  /// @throw std::invalid_argument where ids here are above kLargestChosenId and above all that
+  /// `earlier` has given.
   void reserveIdsOf(const Scene& earlier);
 
  private:

@@ -56,6 +56,22 @@ TEST(SceneIds, OfAnEarlierSceneAreNotGivenAgain) {
   EXPECT_EQ(scene.addParticles({testing::particleAt({0, 1, 0})}), Ids{3});
 }
 
+TEST(SceneIds, ThatAreUsedUpAreRefusedWithTheReason) {
+  Scene scene({}, {4294967292}, {testing::particleAt({1, 0, 0})}, {}, {});
+  EXPECT_EQ(refusal([&] {
+              scene.addParticles(std::vector(3, testing::particleAt({0, 1, 0})));
+            }),
+            "particles to add are 3, and 2 ids are left: the largest is 4294967294, and none is "
+            "given twice; they begin from 0 again after a new start");
+  EXPECT_EQ(scene.addParticles(std::vector(2, testing::particleAt({0, 1, 0}))),
+            (Ids{4294967293, 4294967294}));
+  scene.clear();
+  EXPECT_EQ(refusal([&] {
+              scene.addParticles({testing::particleAt({0, 1, 0})});
+            }).find("particles to add are 1, and 0 ids are left: "),
+            0u);
+}
+
 TEST(SceneParticles, ComeNormalised) {
   Particle particle = testing::particleAt({0, 0, 3e200});
   particle.angular_velocity = {1, 2, 3};

@@ -112,6 +112,21 @@ class TestRoundTrip(FileTest):
         self.node.load_scene('ids.json')
         self.assertEqual([last + 1], list(self.node.add_particles([particle((1, 0, 0))]).ids))
 
+    def test_ids_that_would_use_up_all_others(self):
+        add_random_scene(self.node, seed=3)
+        saved = self.saved('ids.json')
+        for kind in ('particles',) + KINDS:
+            scene = json.loads(json.dumps(saved))
+            scene[kind][-1]['id'] = 4294967294
+            if kind == 'particles':  # which no spring may join then
+                for springs in KINDS:
+                    scene[springs] = []
+            with open(self.path('large.json'), 'w') as file:
+                json.dump(scene, file)
+            self.assert_refused('is 4294967294; allowed: at most 4000000000', 'load_scene',
+                                'large.json')
+            add_random_scene(self.node, seed=4)
+
     def test_reset_leads_to_what_was_loaded(self):
         add_random_scene(self.node, seed=4)
         self.node.step(20)
