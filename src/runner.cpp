@@ -294,4 +294,18 @@ Runner::Snapshot Runner::snapshot() {
   return now;
 }
 
+SceneFile Runner::present() {
+  SceneFile now;
+  std::shared_ptr<const RelaxationResult> shown;
+  {
+    const Lock lock(mutex_);
+    now.scene = simulation_.presentScene();
+    now.time = simulation_.state().time;
+    const ControlLock control(control_);
+    shown = shown_;
+  }
+  if (shown) now.scene.place(shown->positions, Points::Zero(3, shown->positions.cols()));
+  return now;
+}
+
 }  // namespace spherical_springs::core

@@ -90,6 +90,9 @@ class Runner {
   };
   Snapshot snapshot();
 
+  /// The scene with its particles where they are now: of a relaxation under way, the best so far.
+  SceneFile present();
+
  private:
   class Busy;
   struct Work;

@@ -133,11 +133,8 @@ void Services::removeSprings(const RemoveSprings::Request& request,
 }
 
 void Services::getScene(const GetScene::Request&, GetScene::Response& response) {
-  core::Scene scene;
-  runner_.read([&](const core::Simulation& s) {
-    scene = s.presentScene();
-    response.time = s.state().time;
-  });
+  const auto [scene, time] = runner_.present();
+  response.time = time;
   const auto fill = [](const auto& table, auto& ids, auto& messages) {
     ids = table.ids();
     messages.reserve(table.size());
@@ -164,11 +161,7 @@ void Services::loadScene(const LoadScene::Request& request, LoadScene::Response&
 void Services::saveScene(const SaveScene::Request& request, SaveScene::Response& response) {
   const auto path = directory_.inside(request.path);
   directory_.make();
-  core::Scene scene;
-  const double time = runner_.read([&](const core::Simulation& s) {
-    scene = s.presentScene();
-    return s.state().time;
-  });
+  const auto [scene, time] = runner_.present();
   core::writeScene(path, scene, time);
   response.message = "saved " + core::onOneLine(path);
   publisher_.tell(response.message);
