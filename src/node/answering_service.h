@@ -4,11 +4,11 @@
 #include <ros/service_server.h>
 
 #include <exception>
-#include <new>
 #include <string>
 #include <utility>
 
 #include "request_stream.h"
+#include "surviving.h"
 
 namespace spherical_springs {
 
@@ -31,10 +31,8 @@ class AnsweringService : public ros::ServiceCallbackHelper {
       handle_(request, response);
       params.response = ros::serialization::serializeServiceResponse(true, response);
       return true;
-    } catch (const std::bad_alloc&) {
-      reason = "there is not enough memory for this";
     } catch (const std::exception& fault) {
-      reason = fault.what();
+      reason = reasonOf(fault);
     }
     typename Service::Response refusal;
     refusal.success = false;

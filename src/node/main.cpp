@@ -1,9 +1,11 @@
 #include <malloc.h>
 #include <ros/ros.h>
 
+#include <array>
 #include <csignal>
 #include <stdexcept>
 
+#include "callback_threads.h"
 #include "marker_publisher.h"
 #include "parameters.h"
 #include "publisher.h"
@@ -13,6 +15,7 @@
 #include "spherical_springs/runner.h"
 #include "spherical_springs/scene_file.h"
 #include "stepper.h"
+#include "surviving.h"
 
 namespace spherical_springs {
 namespace {
@@ -26,27 +29,54 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
     runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
   } catch (const std::exception& fault) {
     throw std::invalid_argument("parameter ~scene is " + core::quoted(parameters.scene) +
-                                "; allowed: a scene file; " + fault.what());
+                                "; allowed: a scene file; " + reasonOf(fault));
   }
 }
 
+// Who runs what, beside the threads of ROS itself, which read requests and send what is published:
+//   calls       eight threads, one for each service call under way, long ones too
+//   cancelling, pausing   ~cancel and ~set_running, which long calls must not hold up
+//   ticking     the clock's ticks, which it hands to the thread of Stepper, which steps
+//   sampling    ~poses and ~energies
+//   reporting   ~status and /diagnostics
+//   drawing     ~markers
+// A relaxation has a thread of its own, for which the caller waits (Runner); loops over many
+// springs are shared among threads of the core.
+struct Threads {
+  CallbackThreads calls{8}, cancelling{1}, pausing{1}, ticking{1}, sampling{1}, reporting{1},
+      drawing{1};
+
+  void start() {
+    for (CallbackThreads* threads : all()) threads->start();
+  }
+  void stop() {
+    for (CallbackThreads* threads : all()) threads->stop();
+  }
+
+ private:
+  std::array<CallbackThreads*, 7> all() {
+    return {&calls, &cancelling, &pausing, &ticking, &sampling, &reporting, &drawing};
+  }
+};
+
 void run() {
-  constexpr int kThreads = 8;  // long calls hold one each
-  ros::NodeHandle node("~");
+  const ros::NodeHandle node("~");
   const Parameters parameters = Parameters::from(node);
   const SceneDirectory directory(parameters.scene_directory);
   core::Runner runner(parameters.simulation(), parameters.running);
   loadFirstScene(parameters, directory, runner);
 
-  Publisher publisher(node, runner, parameters);
-  const MarkerPublisher markers(node, runner, parameters);
-  const Services services(node, runner, publisher, directory);
-  const Stepper stepper(node, runner, parameters);
-  ros::AsyncSpinner spinner(kThreads);
-  spinner.start();
+  Threads threads;
+  Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner,
+                      parameters);
+  const MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
+  const Services services(threads.calls.handle(node), threads.cancelling.handle(node),
+                          threads.pausing.handle(node), runner, publisher, directory);
+  const Stepper stepper(threads.ticking.handle(node), runner, parameters);
+  threads.start();
   ros::waitForShutdown();
   runner.close();
-  spinner.stop();
+  threads.stop();
 }
 
 }  // namespace
@@ -59,8 +89,8 @@ int main(int argc, char** argv) {
   mallopt(M_ARENA_MAX, 1);  // NOLINT(concurrency-mt-unsafe): there is no other thread yet
 #endif
   const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it
-  // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle. The first handle starts
-  // ROS and thereby forgets every earlier request to shut down, so this comes after it.
+  // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle. The first handle
+  // starts ROS and thereby forgets every earlier request to shut down, so this comes after it.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   try {
     spherical_springs::run();

@@ -3,10 +3,10 @@
 #include <ros/serialization.h>
 #include <ros/single_subscriber_publisher.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "markers.h"
+#include "surviving.h"
 
 namespace spherical_springs {
 
@@ -14,14 +14,6 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 namespace {
-
-/// All that may change, in an order of their own.
-std::vector<Marker> changingMarkers(const core::Runner::Snapshot& now, double radius) {
-  const core::System& system = *now.system;
-  const core::Points& positions = now.state.positions;
-  return {particlesMarker(system, positions, radius), arcsMarker(system, positions, radius),
-          trianglesMarker(system, positions, radius)};
-}
 
 bool samePlaces(const core::Points& a, const core::Points& b) {
   return a.cols() == b.cols() && a == b;
@@ -38,51 +30,72 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle node, core::Runner& runner,
       "markers", kQueue,
       [this](const ros::SingleSubscriberPublisher& listener) { greet(listener); });
   timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
-                            [this](const ros::TimerEvent&) { publishChanges(); });
+                            surviving("~markers are sent later", [this] { publishChanges(); }));
+}
+
+MarkerPublisher::Markers MarkerPublisher::markersOf(const core::Runner::Snapshot& moment) const {
+  const core::System& system = *moment.system;
+  const core::Points& positions = moment.state.positions;
+  const double radius = parameters_.radius;
+  return {particlesMarker(system, positions, radius), arcsMarker(system, positions, radius),
+          trianglesMarker(system, positions, radius)};
 }
 
 void MarkerPublisher::greet(const ros::SingleSubscriberPublisher& listener) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  greeted_ = true;
+  if (survive("a new listener gets ~markers later", [&] { sendAll(listener); })) return;
+  for (std::size_t i = 0; i < sent_.size(); ++i) forget(i);
+}
+
+void MarkerPublisher::sendAll(const ros::SingleSubscriberPublisher& listener) {
   auto now = runner_.snapshot();
-  std::vector<Marker> markers = changingMarkers(now, parameters_.radius);
-  if (publisher_.getNumSubscribers() <= 1) remember(std::move(now), markers);
-  listener.publish(arrayOf(std::move(markers)));
+  Markers markers = markersOf(now);
+  listener.publish(arrayOf({markers.begin(), markers.end()}));
+  if (publisher_.getNumSubscribers() <= 1) {
+    remember(std::move(now), std::move(markers));
+    return;
+  }
+  // The others have older ones.
+  for (std::size_t i = 0; i < sent_.size(); ++i) {
+    if (markers[i] != sent_[i]) forget(i);
+  }
 }
 
 void MarkerPublisher::publishChanges() {
-  // What large scenes may take of everyone's time: of the network's, and of a processor's.
-  constexpr double kBytesPerSecond = 5e7;
-  constexpr double kRestAfterWork = 4;
+  constexpr double kBytesPerSecond = 5e7;  // of the network
   if (publisher_.getNumSubscribers() == 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (sent_.empty() || ros::WallTime::now() < next_) return;
-  const ros::WallTime begin = ros::WallTime::now();
+  if (!greeted_ || !rest_.isOver()) return;
+  Rest::Work work(rest_);
   auto now = runner_.snapshot();
   if (now.system == system_ && samePlaces(now.state.positions, positions_)) return;
 
-  std::vector<Marker> markers = changingMarkers(now, parameters_.radius);
+  Markers markers = markersOf(now);
   std::vector<Marker> changed;
   for (std::size_t i = 0; i < markers.size(); ++i) {
     if (markers[i] != sent_[i]) changed.push_back(markers[i]);
   }
+  if (!changed.empty()) {
+    const MarkerArray message = arrayOf(std::move(changed));
+    publisher_.publish(message);
+    work.restAtLeast(ros::serialization::serializationLength(message) / kBytesPerSecond);
+  }
   remember(std::move(now), std::move(markers));
-  if (changed.empty()) return;
-
-  const MarkerArray message = arrayOf(std::move(changed));
-  const double bytes = ros::serialization::serializationLength(message);
-  publisher_.publish(message);
-  const ros::WallTime end = ros::WallTime::now();
-  next_ =
-      end + std::max(ros::WallDuration(bytes / kBytesPerSecond), (end - begin) * kRestAfterWork);
 }
 
-void MarkerPublisher::remember(core::Runner::Snapshot moment, std::vector<Marker> markers) {
+void MarkerPublisher::remember(core::Runner::Snapshot&& moment, Markers&& markers) noexcept {
   system_ = std::move(moment.system);
   positions_ = std::move(moment.state.positions);
   sent_ = std::move(markers);
 }
 
-MarkerArray MarkerPublisher::arrayOf(std::vector<Marker> markers) {
+void MarkerPublisher::forget(std::size_t marker) noexcept {
+  sent_[marker] = Marker();
+  system_.reset();
+}
+
+MarkerArray MarkerPublisher::arrayOf(std::vector<Marker> markers) const {
   MarkerArray message;
   message.markers = std::move(markers);
   message.markers.push_back(sphereMarker(parameters_.radius));

@@ -5,28 +5,37 @@
 #include <ros/timer.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "parameters.h"
+#include "rest.h"
 #include "spherical_springs/runner.h"
 
 namespace spherical_springs {
 
 /// Publishes ~markers: all to a new listener at once, and afterwards, at the publishing rate at
-/// most, those that have changed.
+/// most, those that have changed. What could not be sent, for want of memory, is sent later.
 class MarkerPublisher {
  public:
   /// `runner` must live longer.
   MarkerPublisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters);
 
  private:
+  /// All that may change, in an order of their own.
+  using Markers = std::array<visualization_msgs::Marker, 3>;
+
+  Markers markersOf(const core::Runner::Snapshot& moment) const;
   void greet(const ros::SingleSubscriberPublisher& listener);
+  void sendAll(const ros::SingleSubscriberPublisher& listener);
   void publishChanges();
-  void remember(core::Runner::Snapshot moment, std::vector<visualization_msgs::Marker> markers);
+  void remember(core::Runner::Snapshot&& moment, Markers&& markers) noexcept;
+  void forget(std::size_t marker) noexcept;
   /// With the sphere, which is small, and with headers.
-  visualization_msgs::MarkerArray arrayOf(std::vector<visualization_msgs::Marker> markers);
+  visualization_msgs::MarkerArray arrayOf(std::vector<visualization_msgs::Marker> markers) const;
 
   // Read-only.
   const Parameters parameters_;
@@ -35,11 +44,12 @@ class MarkerPublisher {
 
   // So that no listener gets an older moment after a newer one. Guards what follows.
   std::mutex mutex_;
-  // What was last sent to all, and the moment that it shows; empty until someone has listened.
+  bool greeted_ = false;  // anyone
+  Markers sent_;          // the last ones that went to all; empty where some have not got the last
+  // The moment that they show; no system where some have not got the last.
   std::shared_ptr<const core::System> system_;
   core::Points positions_;
-  std::vector<visualization_msgs::Marker> sent_;
-  ros::WallTime next_;  // not to publish before
+  Rest rest_;
 
   // Last, so that their callbacks end before what these use.
   ros::Publisher publisher_;

@@ -19,22 +19,24 @@ const char* nameOf(const core::Runner::Snapshot& snapshot) {
 
 // Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
 // read while the clock stands still.
-Publisher::Publisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters)
+Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner,
+                     const Parameters& parameters)
     : parameters_(parameters),
       runner_(runner),
-      diagnostics_(node),
-      last_status_(ros::WallTime::now()),
+      diagnostics_(reporting),
       lag_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { statusChanged(); };
-  poses_ = node.advertise<geometry_msgs::PoseArray>("poses", 1);
-  energies_ = node.advertise<Energies>("energies", 100);
-  status_ = node.advertise<Status>("status", 10, on_listener, ros::SubscriberStatusCallback(),
-                                   ros::VoidConstPtr(), true);
-  sample_timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
-                                   surviving([this] { publishSample(); }));
-  status_timer_ = node.createWallTimer(ros::WallDuration(kStatusCheck),
-                                       surviving([this] { publishStatusIfDue(); }));
+  poses_ = sampling.advertise<geometry_msgs::PoseArray>("poses", 1);
+  energies_ = sampling.advertise<Energies>("energies", 100);
+  status_ = reporting.advertise<Status>("status", 10, on_listener, ros::SubscriberStatusCallback(),
+                                        ros::VoidConstPtr(), true);
+  sample_timer_ = sampling.createTimer(
+      ros::Duration(1 / parameters_.publish_rate),
+      surviving("a sample of ~poses and ~energies is left out", [this] { publishSample(); }));
+  status_timer_ =
+      reporting.createWallTimer(ros::WallDuration(kStatusCheck),
+                                surviving("~status comes later", [this] { publishStatusIfDue(); }));
 }
 
 void Publisher::tell(const std::string& message) {
@@ -73,23 +75,25 @@ void Publisher::publishSample() {
 }
 
 void Publisher::publishStatusIfDue() {
-  constexpr double kPeriod = 1;  // [s]
-  constexpr double kRestAfterWork = 4;
+  constexpr std::chrono::seconds kPeriod(1);
+  if (!rest_.isOver()) return;
   const bool listened_to = status_.getNumSubscribers() > 0 || diagnostics_.listenedTo();
-  const ros::WallTime begin = ros::WallTime::now();
-  const double age = (begin - last_status_).toSec();
-  if (begin < next_status_) return;
-  if (!status_changed_.exchange(false) && !(listened_to && age >= kPeriod)) return;
-  const Report now = report(runner_.snapshot());
-  status_.publish(now.status);
-  if (diagnostics_.listenedTo()) diagnostics_.publish(now);
-  const ros::WallTime end = ros::WallTime::now();
-  next_status_ = end + (end - begin) * kRestAfterWork;
+  const bool due = listened_to && Clock::now() - last_status_ >= kPeriod;
+  if (!status_changed_.exchange(false) && !due) return;
+  const Rest::Work work(rest_);
+  try {
+    const Report now = report(runner_.snapshot());
+    status_.publish(now.status);
+    if (diagnostics_.listenedTo()) diagnostics_.publish(now);
+  } catch (...) {
+    statusChanged();  // to be told yet
+    throw;
+  }
 }
 
 double Publisher::realTimeFactor(const core::State& state) {
-  const ros::WallTime now = ros::WallTime::now();
-  const double elapsed = (now - last_status_).toSec();
+  const auto now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - last_status_).count();
   const double simulated = state.time - last_simulated_;
   last_status_ = now;
   last_simulated_ = state.time;

@@ -8,6 +8,7 @@
 #include <spherical_springs/Energies.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,16 +16,20 @@
 #include "diagnostics.h"
 #include "lag.h"
 #include "parameters.h"
+#include "rest.h"
 #include "spherical_springs/runner.h"
 
 namespace spherical_springs {
 
 /// Publishes poses, energies, status and diagnostics. Nothing is computed for a topic that nobody
-/// listens to, but for the status at a change, which is latched.
+/// listens to, but for the status at a change, which is latched. A sample that cannot be made, for
+/// want of memory, is left out; a status is tried again.
 class Publisher {
  public:
-  /// `runner` must live longer.
-  Publisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters);
+  /// `sampling` and `reporting`: handles whose callbacks publish poses and energies, and status and
+  /// diagnostics, each on one thread. `runner` must live longer.
+  Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner,
+            const Parameters& parameters);
 
   /// The status will be published soon: within a twentieth of a second, but for large scenes, whose
   /// status takes long to work out.
@@ -38,6 +43,8 @@ class Publisher {
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void publishSample();
   void publishStatusIfDue();
   Report report(const core::Runner::Snapshot& snapshot);
@@ -52,7 +59,8 @@ class Publisher {
   Diagnostics diagnostics_;
 
   // Used by the status timer alone.
-  ros::WallTime last_status_, next_status_;  // not to publish before the next
+  Clock::time_point last_status_ = Clock::now();
+  Rest rest_;
   double last_simulated_ = 0;
   Lag lag_;
   core::Measures measures_;

@@ -63,8 +63,8 @@ void Services::advertise(ros::NodeHandle& node, const std::string& name, Handler
   });
 }
 
-Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publisher,
-                   const SceneDirectory& directory)
+Services::Services(ros::NodeHandle node, ros::NodeHandle cancelling, ros::NodeHandle pausing,
+                   core::Runner& runner, Publisher& publisher, const SceneDirectory& directory)
     : runner_(runner), publisher_(publisher), directory_(directory) {
   advertise<AddParticles>(node, "add_particles", &Services::addParticles);
   advertise<SetParticles>(node, "set_particles", &Services::setParticles);
@@ -77,10 +77,10 @@ Services::Services(ros::NodeHandle node, core::Runner& runner, Publisher& publis
   advertiseReader<SaveScene>(node, "save_scene", &Services::saveScene);
   advertise<std_srvs::Trigger>(node, "clear", &Services::clear);
   advertise<std_srvs::Trigger>(node, "reset", &Services::reset);
-  advertise<std_srvs::SetBool>(node, "set_running", &Services::setRunning);
+  advertise<std_srvs::SetBool>(pausing, "set_running", &Services::setRunning);
   advertiseReader<Step>(node, "step", &Services::step);
   advertise<Relax>(node, "relax", &Services::relax);
-  advertise<std_srvs::Trigger>(node, "cancel", &Services::cancel);
+  advertise<std_srvs::Trigger>(cancelling, "cancel", &Services::cancel);
 }
 
 void Services::addParticles(const AddParticles::Request& request,

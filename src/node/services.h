@@ -27,9 +27,11 @@ namespace spherical_springs {
 
 class Services {
  public:
-  /// Advertises all services under `node`. What is passed must live longer.
-  Services(ros::NodeHandle node, core::Runner& runner, Publisher& publisher,
-           const SceneDirectory& directory);
+  /// Advertises all services: ~cancel and ~set_running under handles of their own, whose queues are
+  /// to be called while long calls occupy the threads of the others. What is passed must live
+  /// longer.
+  Services(ros::NodeHandle node, ros::NodeHandle cancelling, ros::NodeHandle pausing,
+           core::Runner& runner, Publisher& publisher, const SceneDirectory& directory);
 
  private:
   void addParticles(const AddParticles::Request& request, AddParticles::Response& response);

@@ -7,6 +7,8 @@
 namespace spherical_springs {
 namespace {
 
+using WallClock = std::chrono::steady_clock;
+
 constexpr double kPeriod = 0.01;  // [s]
 
 }  // namespace
@@ -15,9 +17,10 @@ Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parame
     : runner_(runner),
       pacer_(parameters.time_step, parameters.real_time_factor),
       last_step_(ros::Time::now()),
-      last_wall_step_(ros::WallTime::now()),
-      thread_([this] { stepAtEachTick(); }),
-      timer_(node.createTimer(ros::Duration(kPeriod), surviving([this] { tick(); }))) {}
+      last_wall_step_(WallClock::now()),
+      timer_(node.createTimer(ros::Duration(kPeriod),
+                              surviving("a tick is left out", [this] { tick(); }))),
+      thread_([this] { stepAtEachTick(); }) {}
 
 Stepper::~Stepper() {
   {
@@ -43,7 +46,7 @@ void Stepper::stepAtEachTick() {
     if (ends_) return;
     ticked_ = false;
     lock.unlock();
-    survive([this] { step(); });
+    survive("steps are left out", [this] { step(); });
     lock.lock();
   }
 }
@@ -51,12 +54,12 @@ void Stepper::stepAtEachTick() {
 // Steps that do not fit into the time until the next tick are dropped: simulated time falls behind.
 void Stepper::step() {
   const ros::Time now = ros::Time::now();
-  const ros::WallTime wall_now = ros::WallTime::now();
+  const auto wall_now = WallClock::now();
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
   const double elapsed = last_step_.isZero() ? 0 : (now - last_step_).toSec();
   const std::uint64_t due = pacer_.due(elapsed);
-  const double wall_elapsed = (wall_now - last_wall_step_).toSec();
+  const double wall_elapsed = std::chrono::duration<double>(wall_now - last_wall_step_).count();
   last_step_ = now;
   last_wall_step_ = wall_now;
   runner_.advance(due, std::max(kPeriod, wall_elapsed));

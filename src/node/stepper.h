@@ -3,6 +3,7 @@
 #include <ros/node_handle.h>
 #include <ros/timer.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -17,7 +18,8 @@ namespace spherical_springs {
 /// steps on a thread of its own, so that the threads that answer have the processor when they ask.
 class Stepper {
  public:
-  /// `runner` must live longer.
+  /// The callbacks of `node` tell of the clock's ticks, and take no time. `runner` must live
+  /// longer.
   Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters);
   ~Stepper();
 
@@ -31,14 +33,14 @@ class Stepper {
   // Used by the thread alone.
   Pacer pacer_;
   ros::Time last_step_;
-  ros::WallTime last_wall_step_;
+  std::chrono::steady_clock::time_point last_wall_step_;
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   bool ticked_ = false, ends_ = false;
 
-  std::thread thread_;
-  ros::Timer timer_;  // last, so that its callbacks end before what they use
+  ros::Timer timer_;
+  std::thread thread_;  // last, so that nothing can fail once it has begun
 };
 
 }  // namespace spherical_springs

@@ -1,27 +1,59 @@
+// Faults in what ROS calls back: ROS would end the node, and would never call a timer again.
 #pragma once
 
 #include <ros/console.h>
 
+#include <cstdio>
 #include <exception>
+#include <new>
+#include <system_error>
+
+#include "throttle.h"
 
 namespace spherical_springs {
 
-/// Does `work` and outlives what it throws, such as a lack of memory: the log tells of it.
-template <class Work>
-void survive(const Work& work) {
-  constexpr double kQuiet = 10;  // [s]
+/// A text for the log and for answers.
+inline const char* reasonOf(const std::exception& fault) {
+  if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr) {
+    return "there is not enough memory for this";
+  }
+  const auto* error = dynamic_cast<const std::system_error*>(&fault);
+  if (error != nullptr && error->code() == std::errc::resource_unavailable_try_again) {
+    return "no thread could be started for this: there is not enough memory, or too many are there";
+  }
+  return fault.what();
+}
+
+/// Logs "`consequence`: `reason`"; on standard error alone where there is no memory for the log.
+inline void logFault(const char* consequence, const char* reason) noexcept {
   try {
-    work();
-  } catch (const std::exception& fault) {
-    ROS_ERROR_THROTTLE(kQuiet, "a tick of a timer failed: %s", fault.what());
+    ROS_ERROR("%s: %s", consequence, reason);
+  } catch (...) {
+    std::fprintf(stderr, "%s: %s\n", consequence, reason);
   }
 }
 
-/// A callback of a timer that survives `work`, and tries again at the next tick. ROS would end the
-/// node.
+/// Does `work` and outlives whatever it throws. The log tells of that, every ten seconds at most
+/// from one place in the code: "`consequence`: the reason".
+/// @return whether `work` came to its end.
 template <class Work>
-auto surviving(const Work& work) {
-  return [work](const auto&) { survive(work); };
+bool survive(const char* consequence, const Work& work) noexcept {
+  static Throttle throttle(std::chrono::seconds(10));  // one for each type of `work`
+  try {
+    work();
+    return true;
+  } catch (const std::exception& fault) {
+    if (throttle.isDue()) logFault(consequence, reasonOf(fault));
+  } catch (...) {
+    if (throttle.isDue()) logFault(consequence, "unknown");
+  }
+  return false;
+}
+
+/// A callback of a timer that survives `work`, and tries again at the next tick.
+template <class Work>
+auto surviving(const char* consequence, const Work& work) {
+  return [consequence, work](const auto&) { survive(consequence, work); };
 }
 
 }  // namespace spherical_springs

@@ -1,12 +1,15 @@
 """Long calls: what may be done meanwhile, and how they end early."""
 
+import os
+import tempfile
 import time
+import unittest
 from concurrent import futures
 
 import numpy as np
-from spherical_springs.msg import Status
+from spherical_springs.msg import Energies, Status
 
-from node_client import LONG, NodeProcess, NodeTest, Refused
+from node_client import LONG, NodeProcess, NodeTest, Refused, wait_until
 from scenes import add_knot, angular_velocities, exact, positions
 
 SOON = 1  # [s]
@@ -126,3 +129,39 @@ class TestNothingUnderWay(NodeTest):
         self.assertEqual(exact(before), exact(self.node.get_scene()))
         self.assertAlmostEqual(before.time + 5e-3, self.node.step(5).time, delta=1e-12)
         self.assertTrue(self.node.relax().converged)
+
+
+class TestBesideManyLongCalls(unittest.TestCase):
+    """As many as the node answers at once."""
+
+    CALLS = 8
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.path = os.path.join(directory.name, 'slow.json')
+        with open(self.path, 'w') as file:
+            file.write('{"format": "spherical_springs scene 1", "particles": [%s]}' % ','.join(
+                ['{"position": [1.%s, 2, 3]}' % ('0' * 1000)] * 40000))
+        self.process = NodeProcess(scene_directory=directory.name, publish_rate=100)
+        self.addCleanup(self.process.__exit__)
+        self.node = self.process.client()
+
+    def files_being_read(self):
+        directory = '/proc/%d/fd' % self.process.pid
+        links = (os.path.join(directory, name) for name in os.listdir(directory))
+        return sum(os.path.islink(link) and os.readlink(link) == self.path for link in links)
+
+    def test_cancels_are_answered_and_time_goes_on(self):
+        with self.node.listen('energies', Energies) as samples:
+            samples.first()
+            loads = [self.node.begin('load_scene', path='slow.json') for _ in range(self.CALLS)]
+            wait_until(lambda: self.files_being_read() == self.CALLS)
+            self.node.cancel()
+            self.node.set_running(False)
+            self.node.set_running(True)
+            stopped = samples.all()[-1].time
+            samples.first(lambda sample: sample.time > stopped)
+            self.assertFalse(any(load.done() for load in loads))
+            for load in loads:
+                load.result()

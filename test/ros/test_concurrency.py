@@ -4,20 +4,20 @@ scripts/thread_sanitizer runs it with a node built for ThreadSanitizer, whose ex
 of data races.
 """
 
+import contextlib
 import random
 import tempfile
 import threading
 import unittest
 
 import rospy
-from geometry_msgs.msg import PoseArray
-from spherical_springs.msg import Energies, Status
 
 from node_client import NodeProcess, Refused
 from scenes import add_random_scene, angle_spring, particle
 
 CLIENTS = 5
 CALLS = 60
+TOPICS = ('poses', 'energies', 'status', 'markers')
 
 
 def change(node):
@@ -46,37 +46,68 @@ REQUESTS = [
 
 
 class TestConcurrency(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.process = NodeProcess(scene_directory=directory.name, threads=3, publish_rate=200)
+        self.addCleanup(self.process.__exit__)
+        self.node = self.process.client()
+        # Loops over so many springs are shared among threads.
+        add_random_scene(self.node, seed=1, particles=100, springs=5000)
+        self.node.save_scene('scene.json')
+
+    def begin(self, keep_calling):
+        """Clients, each a thread that calls as `keep_calling(choice)` does."""
+        clients = [threading.Thread(target=keep_calling, args=(random.Random(seed),))
+                   for seed in range(CLIENTS)]
+        for client in clients:
+            client.start()
+        return clients
+
+    def call(self, choice):
+        try:
+            choice.choice(REQUESTS)(self.node)
+        except Refused:
+            pass
+
+    @contextlib.contextmanager
+    def listeners(self):
+        with contextlib.ExitStack() as stack:
+            yield [stack.enter_context(self.node.listen(topic, rospy.AnyMsg)) for topic in TOPICS]
+
     def test_every_call_is_answered(self):
         faults = []
 
-        def keep_calling(node, seed):
-            choice = random.Random(seed)
+        def keep_calling(choice):
             for _ in range(CALLS):
                 try:
-                    choice.choice(REQUESTS)(node)
-                except Refused:
-                    pass
+                    self.call(choice)
                 except (rospy.ServiceException, rospy.ROSException) as fault:
                     faults.append(fault)
 
-        with tempfile.TemporaryDirectory() as directory, \
-                NodeProcess(scene_directory=directory, threads=3, publish_rate=200) as process:
-            node = process.client()
-            # Loops over so many springs are shared among threads.
-            add_random_scene(node, seed=1, particles=100, springs=5000)
-            node.save_scene('scene.json')
-            clients = [threading.Thread(target=keep_calling, args=(node, seed))
-                       for seed in range(CLIENTS)]
-            for client in clients:
-                client.start()
-            while any(client.is_alive() for client in clients):
-                # Listeners come and go.
-                with node.listen('poses', PoseArray) as poses, \
-                        node.listen('energies', Energies) as samples, \
-                        node.listen('status', Status) as statuses:
-                    for listener in (poses, samples, statuses):
-                        listener.first()
-            for client in clients:
-                client.join()
-            self.assertEqual([], faults)
-            self.assertEqual(0, process.stop(), process.output())
+        clients = self.begin(keep_calling)
+        while any(client.is_alive() for client in clients):
+            # They come and go.
+            with self.listeners() as listeners:
+                for listener in listeners:
+                    listener.first()
+        for client in clients:
+            client.join()
+        self.assertEqual([], faults)
+        self.assertEqual(0, self.process.stop(), self.process.output())
+
+    def test_an_end_amid_calls(self):
+        def keep_calling(choice):
+            while True:
+                try:
+                    self.call(choice)
+                except (rospy.ServiceException, rospy.ROSException):
+                    return  # the node has ended
+
+        with self.listeners() as listeners:
+            clients = self.begin(keep_calling)
+            for listener in listeners:
+                listener.first()
+            self.assertEqual(0, self.process.stop(), self.process.output())
+        for client in clients:
+            client.join()

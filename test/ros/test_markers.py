@@ -1,11 +1,14 @@
 """~markers, as RViz gets them."""
 
+import subprocess
+import threading
+
 import numpy as np
 import rospy
 from geometry_msgs.msg import Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
-from node_client import NodeProcess, NodeTest
+from node_client import LONG, NodeProcess, NodeTest
 from scenes import add_octant, angle_spring, particle, positions, solid_angle_spring, vector
 
 ALL = {'sphere', 'particles', 'arcs', 'triangles'}
@@ -84,6 +87,28 @@ class TestMarkers(NodeTest):
             with self.node.listen('poses', rospy.AnyMsg) as poses:
                 poses.several(10)
             self.assertEqual(2, len(arrays.all()))
+
+    def test_what_changes_back_is_sent_to_those_who_saw_it_changed(self):
+        here, there = particle((0, 0, -1)), particle((-1, 0, 0))
+        with NodeProcess(running='false', publish_rate=0.2) as process:
+            node = process.client()
+            ids = node.add_particles([here]).ids
+            with node.listen('markers', MarkerArray) as early:
+                early.first()
+                node.set_particles(ids, [there])
+                late = self.listener_of_its_own(process.name + '/markers')
+                self.assertTrue(any('x: -1.0' in line for line in late))
+                node.set_particles(ids, [here])
+                self.assertTrue(any('z: -1.0' in line for line in late))
+
+    def listener_of_its_own(self, topic):
+        """The lines of a process that prints what comes; listeners in one share a connection."""
+        process = subprocess.Popen(['rostopic', 'echo', topic], stdout=subprocess.PIPE, text=True)
+        end = threading.Timer(LONG, process.kill)
+        end.start()
+        for clean_up in (process.stdout.close, process.wait, process.kill, end.cancel):
+            self.addCleanup(clean_up)
+        return process.stdout
 
     def test_what_is_gone_is_deleted(self):
         ids = add_octant(self.node, damping=0)
