@@ -4,9 +4,12 @@
 #include <ros/service_server.h>
 
 #include <exception>
+#include <functional>
+#include <new>
 #include <string>
 #include <utility>
 
+#include "answer.h"
 #include "request_stream.h"
 #include "surviving.h"
 
@@ -15,45 +18,65 @@ namespace spherical_springs {
 /// A service that answers whatever happens: what goes wrong, from reading the request to writing
 /// the response, becomes `success: false` and a message beside an otherwise empty response. (ROS's
 /// own takes memory for whatever lengths a request claims.)
-template <class Service, class Handle>
+template <class Service>
 class AnsweringService : public ros::ServiceCallbackHelper {
  public:
+  /// Fills the response or throws.
+  using Handle = std::function<void(const typename Service::Request&, Answer<Service>&)>;
+
+  /// A request that breaks `limits` does not come to `handle`.
   AnsweringService(const core::SceneLimits& limits, Handle handle)
-      : limits_(limits), handle_(std::move(handle)) {}
+      : limits_(limits),
+        handle_(std::move(handle)),
+        out_of_memory_(refusalThatMayFail(reasonOf(std::bad_alloc()))) {}
 
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
-    std::string reason;
     try {
-      typename Service::Request request;
-      typename Service::Response response;
-      RequestStream(params.request, limits_).next(request);
-      response.success = true;
-      handle_(request, response);
-      params.response = ros::serialization::serializeServiceResponse(true, response);
-      return true;
+      params.response = answer(params.request);
     } catch (const std::exception& fault) {
-      reason = reasonOf(fault);
+      params.response = refusal(reasonOf(fault));
+    } catch (...) {
+      params.response = refusal("the reason is unknown");
     }
-    typename Service::Response refusal;
-    refusal.success = false;
-    refusal.message = reason;
-    params.response = ros::serialization::serializeServiceResponse(true, refusal);
     return true;
   }
 
  private:
+  ros::SerializedMessage answer(const ros::SerializedMessage& bytes) const {
+    typename Service::Request request;
+    RequestStream(bytes, limits_).next(request);
+    Answer<Service> answer;
+    handle_(request, answer);
+    return answer.serialized(true);
+  }
+
+  ros::SerializedMessage refusal(const char* reason) const noexcept {
+    try {
+      return refusalThatMayFail(reason);
+    } catch (...) {
+      return out_of_memory_;
+    }
+  }
+
+  static ros::SerializedMessage refusalThatMayFail(const char* reason) {
+    Answer<Service> answer;
+    answer.response.message = reason;
+    return answer.serialized(false);
+  }
+
   const core::SceneLimits limits_;
   const Handle handle_;
+  const ros::SerializedMessage out_of_memory_;  // made while there is memory
 };
 
-/// `handle(request, response)` fills the response or throws; a request that breaks `limits` does
-/// not come to it.
-template <class Service, class Handle>
+/// Advertises an AnsweringService.
+template <class Service>
 ros::ServiceServer advertiseAnswering(ros::NodeHandle& node, const std::string& name,
-                                      const core::SceneLimits& limits, const Handle& handle) {
+                                      const core::SceneLimits& limits,
+                                      typename AnsweringService<Service>::Handle handle) {
   ros::AdvertiseServiceOptions options;
   options.init<Service>(name, {});
-  options.helper = boost::make_shared<AnsweringService<Service, Handle>>(limits, handle);
+  options.helper = boost::make_shared<AnsweringService<Service>>(limits, std::move(handle));
   return node.advertiseService(options);
 }
 

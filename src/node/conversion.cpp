@@ -105,6 +105,14 @@ Energies toMessage(const core::Energies& energies) {
   return message;
 }
 
+Energies energiesOf(const core::Runner::Snapshot& snapshot, const std::string& frame_id) {
+  Energies message = toMessage(core::energies(*snapshot.system, snapshot.state));
+  message.header.stamp = ros::Time::now();
+  message.header.frame_id = frame_id;
+  message.time = snapshot.state.time;
+  return message;
+}
+
 // The turn from z to p, by half-angle formulas that do not cancel; at the south pole any axis will
 // do.
 geometry_msgs::Pose toPose(const core::Vector3& p, double radius) {

@@ -8,9 +8,12 @@
 #include <spherical_springs/Particle.h>
 #include <spherical_springs/SolidAngleSpring.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "spherical_springs/measures.h"
+#include "spherical_springs/runner.h"
 #include "spherical_springs/scene.h"
 
 namespace spherical_springs {
@@ -27,6 +30,9 @@ OrientedAngleSpring toMessage(const core::OrientedAngleSpring& spring);
 
 /// The header's stamp and frame, and the simulated time, are left to the caller.
 Energies toMessage(const core::Energies& energies);
+
+/// The energies of `snapshot`, stamped with the present time.
+Energies energiesOf(const core::Runner::Snapshot& snapshot, const std::string& frame_id);
 
 /// The pose of a particle on a sphere of radius `radius` [m]: +z is the outward normal, by the
 /// shortest turn from the frame's own z.
@@ -65,10 +71,10 @@ core::SpringIds springIdsFrom(const Message& message) {
 }
 
 template <class Message>
-void setSpringIds(const core::SpringIds& ids, Message& message) {
-  message.angle_spring_ids = ids.get<core::AngleSpring>();
-  message.solid_angle_spring_ids = ids.get<core::SolidAngleSpring>();
-  message.oriented_angle_spring_ids = ids.get<core::OrientedAngleSpring>();
+void setSpringIds(core::SpringIds&& ids, Message& message) noexcept {
+  message.angle_spring_ids = std::move(ids.get<core::AngleSpring>());
+  message.solid_angle_spring_ids = std::move(ids.get<core::SolidAngleSpring>());
+  message.oriented_angle_spring_ids = std::move(ids.get<core::OrientedAngleSpring>());
 }
 
 }  // namespace spherical_springs

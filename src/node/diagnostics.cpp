@@ -13,40 +13,27 @@ Diagnostics::Diagnostics(ros::NodeHandle node)
 }
 
 void Diagnostics::publish(const Report& report) {
-  report_ = report;
+  report_ = &report;
   updater_.force_update();
 }
 
-void Diagnostics::refused(const std::string& reason) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  refusal_ = reason;
-  refused_at_ = ros::WallTime::now();
-  ++refusals_;
-}
-
-void Diagnostics::relaxed(const std::string& fault) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  relaxation_fault_ = fault;
-}
-
 void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
-  constexpr double kRemembered = 10;  // [s]
-  const Status& status = report_.status;
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const Status& status = report_->status;
+  const News::Facts& news = report_->news;
   wrapper.summary(DiagnosticStatus::OK, status.state);
-  if (report_.blown_up) {
-    wrapper.mergeSummary(DiagnosticStatus::ERROR, "blown up: " + report_.warning);
-  } else if (!report_.warning.empty()) {
-    wrapper.mergeSummary(DiagnosticStatus::WARN, report_.warning);
+  if (report_->blown_up) {
+    wrapper.mergeSummary(DiagnosticStatus::ERROR, "blown up: " + report_->warning);
+  } else if (!report_->warning.empty()) {
+    wrapper.mergeSummary(DiagnosticStatus::WARN, report_->warning);
   }
-  if (refusals_ > 0 && (ros::WallTime::now() - refused_at_).toSec() < kRemembered) {
-    wrapper.mergeSummary(DiagnosticStatus::ERROR, "refused: " + refusal_);
+  if (!news.refusal.empty()) {
+    wrapper.mergeSummary(DiagnosticStatus::ERROR, "refused: " + news.refusal);
   }
-  if (report_.behind) {
+  if (report_->behind) {
     wrapper.mergeSummary(DiagnosticStatus::WARN, "simulated time falls behind the clock");
   }
-  if (!relaxation_fault_.empty()) {
-    wrapper.mergeSummary(DiagnosticStatus::WARN, "not converged: " + relaxation_fault_);
+  if (!news.relaxation_fault.empty()) {
+    wrapper.mergeSummary(DiagnosticStatus::WARN, "not converged: " + news.relaxation_fault);
   }
 
   wrapper.add("time [s]", status.time);
@@ -67,7 +54,7 @@ void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
   wrapper.add("norm error", status.norm_error);
   wrapper.add("largest torque [N m]", status.max_torque);
   wrapper.add("progress of relaxation", status.relax_progress);
-  wrapper.add("requests refused for numbers that are not finite", refusals_);
+  wrapper.add("requests refused for numbers that are not finite", news.refusals);
   wrapper.add("message", status.message);
 }
 

@@ -6,7 +6,9 @@
 #include <stdexcept>
 
 #include "callback_threads.h"
+#include "handlers.h"
 #include "marker_publisher.h"
+#include "news.h"
 #include "parameters.h"
 #include "publisher.h"
 #include "scene_directory.h"
@@ -63,15 +65,18 @@ void run() {
   const ros::NodeHandle node("~");
   const Parameters parameters = Parameters::from(node);
   const SceneDirectory directory(parameters.scene_directory);
+  const core::SceneLimits limits = parameters.simulation().limits;
   core::Runner runner(parameters.simulation(), parameters.running);
   loadFirstScene(parameters, directory, runner);
 
   Threads threads;
-  Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner,
-                      parameters);
+  News news;
+  Handlers handlers(runner, news, directory, limits, parameters.frame_id);
+  const Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner,
+                            news, parameters);
   const MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
   const Services services(threads.calls.handle(node), threads.cancelling.handle(node),
-                          threads.pausing.handle(node), runner, publisher, directory);
+                          threads.pausing.handle(node), handlers, news, limits);
   const Stepper stepper(threads.ticking.handle(node), runner, parameters);
   threads.start();
   ros::waitForShutdown();

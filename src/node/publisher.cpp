@@ -20,13 +20,14 @@ const char* nameOf(const core::Runner::Snapshot& snapshot) {
 // Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
 // read while the clock stands still.
 Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner,
-                     const Parameters& parameters)
+                     News& news, const Parameters& parameters)
     : parameters_(parameters),
       runner_(runner),
+      news_(news),
       diagnostics_(reporting),
       lag_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
-  const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { statusChanged(); };
+  const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { news_.statusChanged(); };
   poses_ = sampling.advertise<geometry_msgs::PoseArray>("poses", 1);
   energies_ = sampling.advertise<Energies>("energies", 100);
   status_ = reporting.advertise<Status>("status", 10, on_listener, ros::SubscriberStatusCallback(),
@@ -37,22 +38,6 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
   status_timer_ =
       reporting.createWallTimer(ros::WallDuration(kStatusCheck),
                                 surviving("~status comes later", [this] { publishStatusIfDue(); }));
-}
-
-void Publisher::tell(const std::string& message) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    message_ = message;
-  }
-  statusChanged();
-}
-
-Energies Publisher::energies(const core::Runner::Snapshot& snapshot) const {
-  Energies message = toMessage(core::energies(*snapshot.system, snapshot.state));
-  message.header.stamp = ros::Time::now();
-  message.header.frame_id = parameters_.frame_id;
-  message.time = snapshot.state.time;
-  return message;
 }
 
 void Publisher::publishSample() {
@@ -68,7 +53,7 @@ void Publisher::publishSample() {
     poses_.publish(message);
   }
   if (to_energies) {
-    Energies message = energies(snapshot);
+    Energies message = energiesOf(snapshot, parameters_.frame_id);
     message.header.stamp = stamp;
     energies_.publish(message);
   }
@@ -79,14 +64,14 @@ void Publisher::publishStatusIfDue() {
   if (!rest_.isOver()) return;
   const bool listened_to = status_.getNumSubscribers() > 0 || diagnostics_.listenedTo();
   const bool due = listened_to && Clock::now() - last_status_ >= kPeriod;
-  if (!status_changed_.exchange(false) && !due) return;
+  if (!news_.takeStatusChange() && !due) return;
   const Rest::Work work(rest_);
   try {
     const Report now = report(runner_.snapshot());
     status_.publish(now.status);
     if (diagnostics_.listenedTo()) diagnostics_.publish(now);
   } catch (...) {
-    statusChanged();  // to be told yet
+    news_.statusChanged();  // to be told yet
     throw;
   }
 }
@@ -136,8 +121,8 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   report.warning = measures.warning;
   report.blown_up = measures.blown_up;
   report.behind = lag_.behind(message.state == "running", ros::Time::now().toSec(), state.time);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  message.message = measures.warning.empty() ? message_ : measures.warning;
+  report.news = news_.facts();
+  message.message = measures.warning.empty() ? report.news.message : measures.warning;
   return report;
 }
 

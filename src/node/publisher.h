@@ -7,14 +7,12 @@
 #include <ros/wall_timer.h>
 #include <spherical_springs/Energies.h>
 
-#include <atomic>
 #include <chrono>
-#include <memory>
-#include <mutex>
 #include <string>
 
 #include "diagnostics.h"
 #include "lag.h"
+#include "news.h"
 #include "parameters.h"
 #include "rest.h"
 #include "spherical_springs/runner.h"
@@ -27,20 +25,9 @@ namespace spherical_springs {
 class Publisher {
  public:
   /// `sampling` and `reporting`: handles whose callbacks publish poses and energies, and status and
-  /// diagnostics, each on one thread. `runner` must live longer.
-  Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner,
+  /// diagnostics, each on one thread. What is passed must live longer.
+  Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner, News& news,
             const Parameters& parameters);
-
-  /// The status will be published soon: within a twentieth of a second, but for large scenes, whose
-  /// status takes long to work out.
-  void statusChanged() { status_changed_ = true; }
-
-  /// Puts `message` into the status as the last thing worth telling a person.
-  void tell(const std::string& message);
-
-  Energies energies(const core::Runner::Snapshot& snapshot) const;
-
-  Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -55,18 +42,15 @@ class Publisher {
 
   // Safe for many threads by themselves.
   core::Runner& runner_;
-  std::atomic<bool> status_changed_{true};
-  Diagnostics diagnostics_;
+  News& news_;
 
   // Used by the status timer alone.
+  Diagnostics diagnostics_;
   Clock::time_point last_status_ = Clock::now();
   Rest rest_;
   double last_simulated_ = 0;
   Lag lag_;
   core::Measures measures_;
-
-  std::mutex mutex_;
-  std::string message_;  // guarded by mutex_
 
   // Last, so that their callbacks end before what these use.
   ros::Publisher poses_, energies_, status_;

@@ -1,0 +1,261 @@
+#include "handlers.h"
+
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "conversion.h"
+#include "spherical_springs/range.h"
+#include "surviving.h"
+
+namespace spherical_springs {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Room for a message that is written after a change [bytes].
+constexpr std::size_t kMessageRoom = 1000;
+
+/// The functions that append take no memory beyond what `text` has reserved.
+void append(std::uint64_t number, std::string& text) {
+  char digits[20];
+  const auto end = std::to_chars(std::begin(digits), std::end(digits), number).ptr;
+  text.append(digits, end);
+}
+
+void appendCount(std::uint64_t count, const char* what, std::string& text) {
+  append(count, text);
+  text.append(" ").append(what).append(count == 1 ? "" : "s");
+}
+
+std::string counted(std::uint64_t count, const char* what) {
+  std::string text;
+  appendCount(count, what, text);
+  return text;
+}
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+template <class Message>
+std::size_t springCount(const Message& message) {
+  return message.angle_springs.size() + message.solid_angle_springs.size() +
+         message.oriented_angle_springs.size();
+}
+
+/// Steps that are undone where what follows them fails.
+class UndoableSteps {
+ public:
+  explicit UndoableSteps(core::Runner& runner)
+      : runner_(runner),
+        before_(runner.read([](const core::Simulation& s) { return s.state(); })) {}
+  UndoableSteps(const UndoableSteps&) = delete;
+  UndoableSteps& operator=(const UndoableSteps&) = delete;
+
+  ~UndoableSteps() {
+    if (undoable_) survive("steps of a call that failed could not be undone", [this] { undo(); });
+  }
+
+  std::uint64_t step(std::uint64_t steps) {
+    const std::uint64_t done = runner_.step(steps);
+    revision_ = runner_.read([](const core::Simulation& s) { return s.revision(); });
+    undoable_ = true;
+    return done;
+  }
+  void keep() { undoable_ = false; }
+
+ private:
+  void undo() {
+    runner_.change([this](core::Simulation& s) {
+      if (s.revision() != revision_)
+        throw std::runtime_error("another client has changed the scene");
+      s.restore(std::move(before_));
+    });
+  }
+
+  core::Runner& runner_;
+  core::State before_;
+  std::uint64_t revision_ = 0;
+  bool undoable_ = false;
+};
+
+}  // namespace
+
+void Handlers::addParticles(const AddParticles::Request& request, Answer<AddParticles>& answer) {
+  auto& response = answer.response;
+  auto particles = fromMessages(request.particles);
+  response.ids.resize(particles.size());
+  response.message = "added " + counted(particles.size(), "particle");
+  answer.reserve();
+  runner_.change([&](core::Simulation& s) { response.ids = s.addParticles(std::move(particles)); });
+}
+
+void Handlers::setParticles(const SetParticles::Request& request, Answer<SetParticles>& answer) {
+  auto particles = fromMessages(request.particles);
+  answer.response.message = "set " + counted(request.ids.size(), "particle");
+  answer.reserve();
+  runner_.change([&](core::Simulation& s) { s.setParticles(request.ids, std::move(particles)); });
+}
+
+void Handlers::removeParticles(const RemoveParticles::Request& request,
+                               Answer<RemoveParticles>& answer) {
+  auto& response = answer.response;
+  answer.reserve(kMessageRoom);
+  runner_.change([&](core::Simulation& s) {
+    response.springs_removed = static_cast<std::uint32_t>(s.removeParticles(request.ids));
+  });
+  response.message = "removed ";
+  appendCount(request.ids.size(), "particle", response.message);
+  response.message += " and ";
+  appendCount(response.springs_removed, "spring", response.message);
+}
+
+void Handlers::addSprings(const AddSprings::Request& request, Answer<AddSprings>& answer) {
+  auto& response = answer.response;
+  auto springs = springsFrom(request);
+  response.angle_spring_ids.resize(request.angle_springs.size());
+  response.solid_angle_spring_ids.resize(request.solid_angle_springs.size());
+  response.oriented_angle_spring_ids.resize(request.oriented_angle_springs.size());
+  response.message = "added " + counted(springCount(request), "spring");
+  answer.reserve();
+  runner_.change(
+      [&](core::Simulation& s) { setSpringIds(s.addSprings(std::move(springs)), response); });
+}
+
+void Handlers::setSprings(const SetSprings::Request& request, Answer<SetSprings>& answer) {
+  auto springs = springsFrom(request);
+  const auto ids = springIdsFrom(request);
+  answer.response.message = "set " + counted(springCount(request), "spring");
+  answer.reserve();
+  runner_.change([&](core::Simulation& s) { s.setSprings(ids, std::move(springs)); });
+}
+
+void Handlers::removeSprings(const RemoveSprings::Request& request, Answer<RemoveSprings>& answer) {
+  const auto ids = springIdsFrom(request);
+  const std::size_t count = request.angle_spring_ids.size() +
+                            request.solid_angle_spring_ids.size() +
+                            request.oriented_angle_spring_ids.size();
+  answer.response.message = "removed " + counted(count, "spring");
+  answer.reserve();
+  runner_.change([&](core::Simulation& s) { s.removeSprings(ids); });
+}
+
+void Handlers::getScene(const GetScene::Request&, Answer<GetScene>& answer) {
+  auto& response = answer.response;
+  const auto [scene, time] = runner_.present();
+  response.time = time;
+  const auto fill = [](const auto& table, auto& ids, auto& messages) {
+    ids = table.ids();
+    messages.reserve(table.size());
+    for (const auto& item : table.items()) messages.push_back(toMessage(item));
+  };
+  fill(scene.particles(), response.particle_ids, response.particles);
+  fill(scene.springs<core::AngleSpring>(), response.angle_spring_ids, response.angle_springs);
+  fill(scene.springs<core::SolidAngleSpring>(), response.solid_angle_spring_ids,
+       response.solid_angle_springs);
+  fill(scene.springs<core::OrientedAngleSpring>(), response.oriented_angle_spring_ids,
+       response.oriented_angle_springs);
+}
+
+void Handlers::loadScene(const LoadScene::Request& request, Answer<LoadScene>& answer) {
+  const auto path = directory_.inside(request.path);
+  auto file = core::readScene(path, limits_);
+  answer.response.message = "loaded " + core::onOneLine(path);
+  answer.reserve();
+  runner_.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  news_.relaxed("");
+  news_.tell(answer.response.message);
+}
+
+void Handlers::saveScene(const SaveScene::Request& request, Answer<SaveScene>& answer) {
+  const auto path = directory_.inside(request.path);
+  const auto [scene, time] = runner_.present();
+  answer.response.message = "saved " + core::onOneLine(path);
+  answer.reserve();
+  directory_.make();
+  core::writeScene(path, scene, time);
+  news_.tell(answer.response.message);
+}
+
+void Handlers::clear(const std_srvs::Trigger::Request&, Answer<std_srvs::Trigger>& answer) {
+  runner_.change([&](core::Simulation& s) {
+    answer.response.message = "removed " + counted(s.scene().particles().size(), "particle") +
+                              " and " + counted(s.scene().springCount(), "spring") + ", time 0";
+    answer.reserve();
+    s.clear();
+  });
+  news_.relaxed("");
+}
+
+void Handlers::reset(const std_srvs::Trigger::Request&, Answer<std_srvs::Trigger>& answer) {
+  answer.response.message = "every particle is where it was last added or set, time 0";
+  answer.reserve();
+  runner_.change([](core::Simulation& s) { s.reset(); });
+  news_.relaxed("");
+}
+
+void Handlers::setRunning(const std_srvs::SetBool::Request& request,
+                          Answer<std_srvs::SetBool>& answer) {
+  answer.response.message = request.data ? "running" : "paused";
+  answer.reserve();
+  runner_.setRunning(request.data);
+}
+
+void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
+  const auto begin = Clock::now();
+  auto& response = answer.response;
+  response.energies.header.frame_id = frame_id_;
+  answer.reserve(kMessageRoom);
+  const auto report = [&] {
+    response.wall_time = secondsSince(begin);
+    const auto now = runner_.snapshot();
+    response.time = now.state.time;
+    response.energies = energiesOf(now, frame_id_);
+  };
+  if (request.steps == 0) {
+    report();
+    return;
+  }
+  const StatusChange told_at_the_end(news_);
+  UndoableSteps steps(runner_);
+  const std::uint64_t done = steps.step(request.steps);
+  report();
+  steps.keep();
+  response.message = done == request.steps ? "did " : "cancelled after ";
+  appendCount(done, "step", response.message);
+  if (done == request.steps) return;
+  response.message += " of ";
+  append(request.steps, response.message);
+}
+
+void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer) {
+  const auto begin = Clock::now();
+  auto& response = answer.response;
+  core::RelaxationOptions options;
+  options.method = core::relaxationMethod(request.method);
+  options.tolerance = request.tolerance;
+  options.max_time = request.max_time;
+  options.keep_orientation = request.keep_orientation;
+  answer.reserve(kMessageRoom);
+  news_.statusChanged();
+  const auto result = runner_.relax(options);
+  response.converged = result.converged;
+  response.iterations = result.iterations;
+  response.wall_time = secondsSince(begin);
+  response.energy_before = result.energy_before;
+  response.energy_after = result.energy_after;
+  response.max_torque = result.max_torque;
+  response.message.assign(result.message, 0, kMessageRoom);
+  news_.relaxed(result.converged ? "" : response.message);
+  news_.tell(response.message, "relax: ");
+}
+
+void Handlers::cancel(const std_srvs::Trigger::Request&, Answer<std_srvs::Trigger>& answer) {
+  answer.reserve(kMessageRoom);
+  answer.response.message = runner_.cancel() ? "cancelling" : "nothing was under way";
+}
+
+}  // namespace spherical_springs
