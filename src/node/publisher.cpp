@@ -25,6 +25,7 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
       runner_(runner),
       news_(news),
       diagnostics_(reporting),
+      stepped_(parameters.time_step),
       lag_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { news_.statusChanged(); };
@@ -76,13 +77,13 @@ void Publisher::publishStatusIfDue() {
   }
 }
 
+/// Of the time since this was called last.
 double Publisher::realTimeFactor(const core::State& state) {
   const auto now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - last_status_).count();
-  const double simulated = state.time - last_simulated_;
   last_status_ = now;
-  last_simulated_ = state.time;
-  return elapsed > 0 && simulated > 0 ? simulated / elapsed : 0;
+  const double simulated = stepped_.add(state.steps);
+  return elapsed > 0 ? simulated / elapsed : 0;
 }
 
 Report Publisher::report(const core::Runner::Snapshot& snapshot) {
@@ -101,7 +102,8 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.state = nameOf(snapshot);
   message.integrator = parameters_.integrator;
   message.time_step = parameters_.time_step;
-  message.real_time_factor = realTimeFactor(state);
+  const double factor = realTimeFactor(state);
+  message.real_time_factor = message.state == "running" ? factor : 0;
   message.step_wall_time = snapshot.step_wall_time;
   message.relax_progress = snapshot.relax_progress;
 
@@ -120,7 +122,8 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.max_torque = measures.max_torque;
   report.warning = measures.warning;
   report.blown_up = measures.blown_up;
-  report.behind = lag_.behind(message.state == "running", ros::Time::now().toSec(), state.time);
+  report.behind =
+      lag_.behind(message.state == "running", ros::Time::now().toSec(), stepped_.total());
   report.news = news_.facts();
   message.message = measures.warning.empty() ? report.news.message : measures.warning;
   return report;

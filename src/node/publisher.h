@@ -16,6 +16,7 @@
 #include "parameters.h"
 #include "rest.h"
 #include "spherical_springs/runner.h"
+#include "stepped_time.h"
 
 namespace spherical_springs {
 
@@ -48,7 +49,7 @@ class Publisher {
   Diagnostics diagnostics_;
   Clock::time_point last_status_ = Clock::now();
   Rest rest_;
-  double last_simulated_ = 0;
+  SteppedTime stepped_;
   Lag lag_;
   core::Measures measures_;
 

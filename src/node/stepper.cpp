@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "elapsed.h"
 #include "surviving.h"
 
 namespace spherical_springs {
@@ -57,7 +58,7 @@ void Stepper::step() {
   const auto wall_now = WallClock::now();
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
-  const double elapsed = last_step_.isZero() ? 0 : (now - last_step_).toSec();
+  const double elapsed = last_step_.isZero() ? 0 : secondsBetween(last_step_, now);
   const std::uint64_t due = pacer_.due(elapsed);
   const double wall_elapsed = std::chrono::duration<double>(wall_now - last_wall_step_).count();
   last_step_ = now;

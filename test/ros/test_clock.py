@@ -81,6 +81,14 @@ class TestClock(ClockTest):
         self.assertLess(self.time_of_standing_clock(), before + 2)
         self.let_pass(0.2)
 
+    def test_jumps_of_a_century(self):
+        century = 3.2e9
+        self.set_clock(100)
+        self.let_pass(0.2)
+        for clock in (100 + century, 100):
+            self.set_clock(clock)
+            self.let_pass(0.2)
+
     def test_steps_are_counted_and_as_long_as_ever(self):
         self.node.set_running(False)
         add_random_scene(self.node, seed=1)

@@ -1,9 +1,13 @@
+import json
 import math
+import os
+import tempfile
+import unittest
 
 import rospy
 from spherical_springs.msg import Status
 
-from node_client import NodeTest
+from node_client import Listener, NodeProcess, NodeTest
 from scenes import add_knot, add_octant, add_random_scene, angle_spring, particle
 
 
@@ -127,7 +131,54 @@ class TestFields(StatusTest):
         self.node.reset()
         self.status(lambda status: status.energy_error == 0)
 
-    def test_real_time_factor(self):
-        self.status(lambda status: status.real_time_factor == 0)
-        self.node.set_running(True)
-        self.status(lambda status: 0.1 < status.real_time_factor < 2)
+
+class TestRealTimeFactor(unittest.TestCase):
+    """Steps count, and no other jump of a scene's time."""
+
+    LATE = 1e5  # [s], the time of a scene in a file
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = directory.name
+        with open(os.path.join(self.directory, 'late.json'), 'w') as file:
+            json.dump({'format': 'spherical_springs scene 1', 'time': self.LATE,
+                       'particles': [{'position': [1, 0, 0]}]}, file)
+
+    def start(self, running, **parameters):
+        process = NodeProcess(running=running, scene_directory=self.directory, **parameters)
+        self.addCleanup(process.__exit__)
+        statuses = Listener(process.name + '/status', Status)
+        statuses.__enter__()
+        self.addCleanup(statuses.__exit__)
+        return process.client(), statuses
+
+    def assert_none_jumps(self, statuses):
+        """The scene's time does, by some 1e5 s in a second."""
+        factors = [status.real_time_factor for status in statuses]
+        self.assertTrue(all(0 <= factor < 1000 for factor in factors), factors)
+
+    def test_while_running(self):
+        _, statuses = self.start('true', scene='late.json')
+        statuses.several(3)
+        statuses.first(lambda status: 0.1 < status.real_time_factor)
+        self.assert_none_jumps(statuses.all())
+
+    def test_while_paused(self):
+        node, statuses = self.start('false')
+        node.load_scene('late.json')
+        statuses.first(lambda status: status.time == self.LATE)
+        node.step(3)
+        statuses.first(lambda status: status.steps == 3 and status.state == 'paused')
+        node.clear()
+        statuses.first(lambda status: status.particles == 0 and status.steps == 0)
+        paused = [s.real_time_factor for s in statuses.all() if s.state == 'paused']
+        self.assertEqual({0}, set(paused))
+
+    def test_where_time_jumps_while_running(self):
+        node, statuses = self.start('true')
+        for jump in (lambda: node.load_scene('late.json'), node.reset, node.clear):
+            jump()
+            seen = len(statuses.all())
+            statuses.several(seen + 3)
+        self.assert_none_jumps(statuses.all())
