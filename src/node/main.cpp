@@ -11,6 +11,7 @@
 #include "news.h"
 #include "parameters.h"
 #include "publisher.h"
+#include "request_memory.h"
 #include "scene_directory.h"
 #include "services.h"
 #include "spherical_springs/range.h"
@@ -69,6 +70,7 @@ void run() {
   core::Runner runner(parameters.simulation(), parameters.running);
   loadFirstScene(parameters, directory, runner);
 
+  const RequestMemory request_memory;
   Threads threads;
   News news;
   Handlers handlers(runner, news, directory, limits, parameters.frame_id);

@@ -4,6 +4,7 @@ import math
 import os
 import resource
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -13,7 +14,8 @@ from spherical_springs.msg import Energies, Status
 from visualization_msgs.msg import MarkerArray
 
 from node_client import NodeProcess, Refused, wait_until
-from scenes import angle_spring, exact, particle
+from scenes import add_octant, angle_spring, exact, particle
+from test_large_requests import many_particles
 from test_markers import ALL, names, points
 
 MEGABYTE = 1e6
@@ -116,3 +118,29 @@ class TestLargeScene(ShortMemoryTest):
             moved = arrays.first(lambda array: 'particles' in names(array) and np.array_equal(
                 (0, 0, 1), points(array.markers[0])[0]))
             self.assertEqual({'sphere', 'particles', 'arcs'}, names(moved))
+
+
+class TestLargeRequests(ShortMemoryTest):
+    """roscpp reads a request before the node sees it, and would end where it has no memory."""
+
+    def setUp(self):
+        self.start()
+        add_octant(self.node, damping=0)
+        self.before = self.node.get_scene()
+        self.leave_room(MEGABYTE / 2)
+
+    def test_are_refused(self):
+        for count in (20000, 200000):
+            with self.assertRaisesRegex(Refused, 'not enough memory'):
+                self.node.add_particles(many_particles(count))
+        self.limit()
+        self.assertEqual(exact(self.before), exact(self.node.get_scene()))
+
+    def test_wait_where_they_are_too_large_to_be_refused(self):
+        call = threading.Thread(target=self.node.add_particles, args=(many_particles(1000000),))
+        call.start()
+        self.await_line('a request waits for memory')
+        self.limit()
+        call.join()
+        with self.node.listen('status', Status) as statuses:
+            statuses.first(lambda status: status.particles == 3 + 1000000)
