@@ -130,10 +130,11 @@ void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>&
     if (isThereAndNoFile(target)) {
       throw std::runtime_error("cannot write " + onOneLine(path) + ": not a file");
     }
+    const fs::path directory = directoryOf(target);  // nothing may fail once the file is there
     Part part(target);
     part.write(write);
     part.takePlace();
-    flushNames(directoryOf(target));
+    flushNames(directory);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <sstream>
 
@@ -38,6 +39,12 @@ class TemporaryDirectory {
  private:
   const fs::path path_;
 };
+
+std::string contentOf(const fs::path& path) {
+  std::ostringstream content;
+  content << std::ifstream(path).rdbuf();
+  return content.str();
+}
 
 /// All of a node but what it needs a network for, with a scene that has moved.
 struct Node {
@@ -252,6 +259,23 @@ TEST_F(ShortMemoryTest, WhileASceneIsLoaded) {
   LoadScene::Request request;
   request.path = "other.json";
   expectAllOrNothing<LoadScene>(&Handlers::loadScene, request);
+}
+
+TEST_F(ShortMemoryTest, WhileASceneIsSaved) {
+  const fs::path path = directory_.path() / "scene.json";
+  const auto old = "what was there before";
+  SaveScene::Request request;
+  request.path = path.filename();
+  for (const long failing : {1L, ShortMemory::kAll}) {
+    bool succeeded = false;
+    for (long failures = 0; !succeeded; ++failures) {
+      std::ofstream(path, std::ios::trunc) << old;
+      Node node(directory_.path());
+      Client<SaveScene> client(node, &Handlers::saveScene, request);
+      succeeded = client.callShortOfMemory(failures, failing).success;
+      ASSERT_EQ(contentOf(path) == old, !succeeded) << failures << " of " << failing;
+    }
+  }
 }
 
 TEST_F(ShortMemoryTest, WhileASceneIsCleared) {
