@@ -67,13 +67,9 @@ BlockOrder blockOrder(const Graph& graph, std::size_t block_size, int threads) {
   const Touched touched = touchedBlocks(graph, block_size, count, threads);
 
   BlockOrder order;
+  order.block_size = block_size;
   order.apart = scheduleOf(coloursOf(count, [&](std::uint32_t block, const auto& visit) {
     for (const std::uint32_t near : touched[block]) visit(near);
-  }));
-  order.far_apart = scheduleOf(coloursOf(count, [&](std::uint32_t block, const auto& visit) {
-    for (const std::uint32_t near : touched[block]) {
-      for (const std::uint32_t other : touched[near]) visit(other);
-    }
   }));
 
   for (std::size_t block = 0; block <= count; ++block) {
@@ -87,6 +83,15 @@ BlockOrder blockOrder(const Graph& graph, std::size_t block_size, int threads) {
     }
   }
   return order;
+}
+
+Schedule farApart(const Graph& graph, const BlockOrder& order, int threads) {
+  const Touched touched = touchedBlocks(graph, order.block_size, order.blocks(), threads);
+  return scheduleOf(coloursOf(order.blocks(), [&](std::uint32_t block, const auto& visit) {
+    for (const std::uint32_t near : touched[block]) {
+      for (const std::uint32_t other : touched[near]) visit(other);
+    }
+  }));
 }
 
 }  // namespace spherical_springs::core

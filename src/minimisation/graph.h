@@ -46,12 +46,11 @@ struct Schedule {
 /// Blocks of neighbouring nodes, and how threads may share them without results that depend on how
 /// many threads there are.
 struct BlockOrder {
+  std::size_t block_size;                 ///< nodes of each block but the last
   std::vector<std::uint32_t> first_node;  ///< of each block, and the end
   /// Blocks of one colour have no neighbours in each other: each may read neighbours and write to
   /// its own nodes.
   Schedule apart;
-  /// Nor have they common neighbours: each may write to neighbours, too.
-  Schedule far_apart;
   std::vector<std::uint32_t> rank;  ///< of each node in the order of `apart`
 
   std::size_t blocks() const { return first_node.size() - 1; }
@@ -60,5 +59,9 @@ struct BlockOrder {
 /// Blocks of `block_size` nodes whose order is already local. The blocks of each colour rise, so
 /// that a thread that takes its share of them in turn, or of all nodes, has about the same ones.
 BlockOrder blockOrder(const Graph& graph, std::size_t block_size, int threads);
+
+/// Colours the same blocks so that those of one colour have no common neighbours, either: each may
+/// write to its neighbours. Takes the square of the number of blocks where all have one in common.
+Schedule farApart(const Graph& graph, const BlockOrder& order, int threads);
 
 }  // namespace spherical_springs::core

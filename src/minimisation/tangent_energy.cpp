@@ -25,6 +25,7 @@ TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eige
     : threads_(system.threads()),
       order_(particleOrder(freeParticles(system, inertia.size() > 0), positions)),
       pattern_(freeGraph(system, order_, threads_), threads_),
+      far_apart_(farApart(pattern_.graph, pattern_.order, threads_)),
       inertia_(std::move(inertia)) {
   forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
   take(system);
@@ -257,7 +258,7 @@ void TangentEnergy::evaluate(Curvature curvature) {
     }
   });
   const int threads = worthwhileThreads(freeCount(), threads_);
-  pattern_.order.far_apart.forEach(threads, [&](std::size_t block) {
+  far_apart_.forEach(threads, [&](std::size_t block) {
     double value = 0;
     forEachKind([&](auto kind) {
       using Spring = typename decltype(kind)::type;

@@ -100,6 +100,7 @@ class TangentEnergy {
   int threads_;
   ParticleOrder order_;
   BlockPattern pattern_;
+  Schedule far_apart_;  // of the pattern's blocks
   PerKind<Compiled> compiled_;
   double unit_ = 1;
   Eigen::VectorXd inertia_;
