@@ -31,6 +31,8 @@ class HalfEdges {
   Index turned(Index h) const { return twin(previous(h)); }
 
  private:
+  void joinTwins(std::vector<Index>::iterator begin, std::vector<Index>::iterator end);
+
   const Faces& faces_;
   std::vector<Index> twins_;
 };
