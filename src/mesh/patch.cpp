@@ -19,8 +19,12 @@ PatchCutter::PatchCutter(const Faces& faces, const Eigen::VectorXd& shares, std:
       shares_(shares),
       half_edges_(faces),
       outgoing_(vertices),
+      valences_(vertices, 0),
       taken_(vertices, false) {
-  for (HalfEdges::Index h = 0; h < half_edges_.size(); ++h) outgoing_[half_edges_.origin(h)] = h;
+  for (HalfEdges::Index h = 0; h < half_edges_.size(); ++h) {
+    outgoing_[half_edges_.origin(h)] = h;
+    ++valences_[half_edges_.origin(h)];
+  }
 }
 
 void PatchCutter::begin() { std::fill(taken_.begin(), taken_.end(), false); }
@@ -44,7 +48,7 @@ Patch PatchCutter::cut(Eigen::Index face, std::size_t size) {
     patch.vertices.push_back(vertex);
   };
   const auto addFree = [&](std::int32_t vertex) {
-    if (!taken_[vertex]) add(vertex);
+    if (!taken_[vertex] && valences_[vertex] <= size) add(vertex);
   };
   for (int k = 0; k < 3; ++k) addFree(faces_(k, face));
   for (std::size_t n = 0; n < patch.vertices.size() && patch.vertices.size() < size; ++n) {

@@ -25,8 +25,8 @@ class PatchCutter {
   /// Of a closed mesh; what is passed must live longer.
   PatchCutter(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices);
 
-  /// About a face, up to `size` free vertices, or the few more that one more ring brings. None is
-  /// free where all corners of the face are in other patches or next to these.
+  /// About a face, up to `size` free vertices, or as many more as one of them has neighbours. None
+  /// is free that has more than `size` neighbours, is in another patch or next to one.
   Patch cut(Eigen::Index face, std::size_t size);
 
   /// Forgets the patches before.
@@ -40,6 +40,7 @@ class PatchCutter {
   const Eigen::VectorXd& shares_;
   HalfEdges half_edges_;
   std::vector<HalfEdges::Index> outgoing_;  // one of each vertex
+  std::vector<std::size_t> valences_;       // faces round each vertex
   std::vector<char> taken_;                 // vertices of patches and next to them
 };
 

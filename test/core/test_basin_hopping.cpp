@@ -3,10 +3,10 @@
 
 #include <set>
 
+#include "hub_shapes.h"
 #include "mesh/basin_hopping.h"
 #include "mesh/coverage.h"
 #include "mesh/map_descent.h"
-#include "shapes.h"
 #include "spherical_springs/mesh/sphere_map.h"
 
 namespace spherical_springs::mesh {
@@ -67,6 +67,16 @@ TEST(Patch, HasAllFacesRoundItsFreeVerticesAndNoOthers) {
   }
   EXPECT_GT(area, 0);
   EXPECT_LT(area, 4 * core::kPi);
+}
+
+TEST(Patch, HoldsVerticesOfTooManyFaces) {
+  const TriangleMesh mesh = testing::doublePyramid(100);
+  const Eigen::VectorXd shares = testing::sharesOf(mesh);
+  const Patch patch = PatchCutter(mesh.faces, shares, 102).cut(7, 30);
+  EXPECT_GE(patch.free, 30);
+  EXPECT_LE(patch.free, 34);
+  EXPECT_EQ(freeOf(patch).count(0) + freeOf(patch).count(1), 0u);
+  EXPECT_EQ(patch.vertices.size(), patch.free + 4u);
 }
 
 TEST(Patch, OthersHaveNoFaceWithItsFreeVertices) {
