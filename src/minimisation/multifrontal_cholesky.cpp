@@ -6,10 +6,12 @@
 
 namespace spherical_springs::core {
 
-MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int threads)
+MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int threads,
+                                           Checkpoint checkpoint)
     : pattern_(pattern),
       threads_(threads),
-      dissection_(nestedDissection(pattern.graph)),
+      checkpoint_(std::move(checkpoint)),
+      dissection_(nestedDissection(pattern.graph, checkpoint_)),
       fronts_(dissection_.parts.size()) {
   // Parts stand in postorder, so that a subtree is a range that ends with its root.
   const auto& parts = dissection_.parts;
@@ -88,6 +90,7 @@ void MultifrontalCholesky::addChild(const Part& part, const Part& child, Front& 
 }
 
 void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& values) {
+  checkpoint_();
   const Part& part = dissection_.parts[p];
   Front& front = fronts_[p];
   const auto own = 2 * static_cast<Eigen::Index>(part.end - part.first);
@@ -121,6 +124,7 @@ void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<doub
     x.segment<2>(2 * place) = residual.segment<2>(2 * dissection_.order[place]);
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
+    checkpoint_();
     const auto own = fronts_[p].own.cols();
     auto part = x.segment(2 * parts[p].first, own);
     fronts_[p].own.triangularView<Eigen::Lower>().solveInPlace(part);
@@ -131,6 +135,7 @@ void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<doub
     }
   }
   for (std::size_t p = parts.size(); p-- > 0;) {
+    checkpoint_();
     const auto own = fronts_[p].own.cols();
     auto part = x.segment(2 * parts[p].first, own);
     if (!parts[p].boundary.empty()) {

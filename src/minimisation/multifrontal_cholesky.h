@@ -13,8 +13,9 @@ namespace spherical_springs::core {
 /// Liu, SIAM Review 34, 1992): for meshes, some n^1.5 multiplications.
 class MultifrontalCholesky : public Preconditioner<double> {
  public:
-  /// `pattern` must live longer.
-  MultifrontalCholesky(const BlockPattern& pattern, int threads);
+  /// `pattern` must live longer. What `checkpoint` throws ends `refresh` or `apply`; `refresh` may
+  /// follow.
+  MultifrontalCholesky(const BlockPattern& pattern, int threads, Checkpoint checkpoint = passAll);
 
   /// Multiplications of one factorisation, about.
   double work() const;
@@ -39,6 +40,7 @@ class MultifrontalCholesky : public Preconditioner<double> {
 
   const BlockPattern& pattern_;
   int threads_;
+  Checkpoint checkpoint_;
   NestedDissection dissection_;
   // Subtrees that threads may share, as ranges of parts; what is above them comes last.
   std::vector<std::pair<std::size_t, std::size_t>> subtrees_;

@@ -1,6 +1,9 @@
 #include "nested_dissection.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "minimum_degree.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -12,8 +15,11 @@ constexpr std::uint32_t kNowhere = ~0u;
 
 class Dissection {
  public:
-  explicit Dissection(const Graph& graph)
-      : graph_(graph), region_(graph.size(), 0), level_(graph.size(), kNowhere) {
+  Dissection(const Graph& graph, const Checkpoint& checkpoint)
+      : graph_(graph),
+        checkpoint_(checkpoint),
+        region_(graph.size(), 0),
+        level_(graph.size(), kNowhere) {
     result_.places.assign(graph.size(), kNowhere);
   }
 
@@ -32,6 +38,7 @@ class Dissection {
 
   /// @return the parts at the top of what the nodes have become.
   Nodes dissect(Nodes nodes) {
+    checkpoint_();
     if (nodes.size() <= kTooSmall) return {eliminate(nodes, {})};
     const std::uint32_t region = ++regions_;
     for (const std::uint32_t i : nodes) region_[i] = region;
@@ -41,11 +48,49 @@ class Dissection {
     reached = levels(reached.back(), region);
     Halves halves = cut(reached, region);
     for (const std::uint32_t i : nodes) level_[i] = kNowhere;
-    if (halves.separator.empty()) return {eliminate(nodes, {})};
+    if (isWide(halves.separator, nodes)) return dissectByDegree(std::move(nodes), region);
     nodes.clear();
     Nodes children = dissect(std::move(halves.before));
     append(dissect(std::move(halves.after)), children);
     return {eliminate(halves.separator, children)};
+  }
+
+  /// Whether a cut is far longer than the root of the number of nodes, with which most meshes can
+  /// do; that is so where a node has most others for neighbours.
+  static bool isWide(const Nodes& separator, const Nodes& nodes) {
+    constexpr double kWide = 4;
+    return separator.empty() ||
+           separator.size() > kWide * std::sqrt(static_cast<double>(nodes.size()));
+  }
+
+  Nodes dissectByDegree(Nodes nodes, std::uint32_t region) {
+    std::sort(nodes.begin(), nodes.end());
+    const auto groups = minimumDegree(partOfGraph(nodes, region), checkpoint_);
+    Nodes parts;
+    for (const EliminationGroup& group : groups) {
+      Nodes own, children;
+      for (const std::uint32_t n : group.nodes) own.push_back(nodes[n]);
+      for (const std::uint32_t child : group.children) children.push_back(parts[child]);
+      if (own.empty()) return children;
+      parts.push_back(eliminate(own, children));
+    }
+    return {parts.back()};
+  }
+
+  /// `nodes`: those of the region, rising; they are numbered in that order.
+  Graph partOfGraph(const Nodes& nodes, std::uint32_t region) const {
+    Graph part;
+    part.first = {0};
+    for (const std::uint32_t i : nodes) {
+      for (std::uint32_t e = graph_.first[i]; e < graph_.first[i + 1]; ++e) {
+        const std::uint32_t j = graph_.neighbours[e];
+        if (region_[j] != region) continue;
+        const auto found = std::lower_bound(nodes.begin(), nodes.end(), j);
+        part.neighbours.push_back(static_cast<std::uint32_t>(found - nodes.begin()));
+      }
+      part.first.push_back(static_cast<std::uint32_t>(part.neighbours.size()));
+    }
+    return part;
   }
 
   /// What hangs together apart from the rest, and what is too small for that together.
@@ -141,6 +186,7 @@ class Dissection {
 
   void findBoundaries() {
     for (NestedDissection::Part& part : result_.parts) {
+      checkpoint_();
       Nodes& boundary = part.boundary;
       for (const std::uint32_t child : part.children) {
         const Nodes& below = result_.parts[child].boundary;
@@ -160,6 +206,7 @@ class Dissection {
   }
 
   const Graph& graph_;
+  const Checkpoint& checkpoint_;
   Nodes region_;  // to which each node belongs
   Nodes level_;
   Nodes last_reached_;
@@ -169,6 +216,8 @@ class Dissection {
 
 }  // namespace
 
-NestedDissection nestedDissection(const Graph& graph) { return Dissection(graph).run(); }
+NestedDissection nestedDissection(const Graph& graph, const Checkpoint& checkpoint) {
+  return Dissection(graph, checkpoint).run();
+}
 
 }  // namespace spherical_springs::core

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint.h"
 #include "graph.h"
 
 namespace spherical_springs::core {
@@ -23,6 +24,7 @@ struct NestedDissection {
   std::vector<Part> parts;            ///< children before parents; a root is no one's child
 };
 
-NestedDissection nestedDissection(const Graph& graph);
+/// Nodes with far more neighbours than most come last.
+NestedDissection nestedDissection(const Graph& graph, const Checkpoint& checkpoint = passAll);
 
 }  // namespace spherical_springs::core

@@ -3,9 +3,11 @@
 
 #include <numeric>
 
+#include "hub_shapes.h"
+#include "mesh/fold_free_start.h"
 #include "mesh/map_energy.h"
+#include "minimisation/minimum_degree.h"
 #include "minimisation/multifrontal_cholesky.h"
-#include "shapes.h"
 #include "spherical_springs/mesh/sphere_map.h"
 
 namespace spherical_springs::core {
@@ -24,23 +26,61 @@ struct Case {
       values[pattern.diagonal[i]] += 0.1 * Eigen::Matrix2d::Identity();
     }
   }
-  VectorOf<double> times(const VectorOf<double>& x) const {
-    VectorOf<double> result(x.size());
-    for (std::size_t i = 0; i < pattern.rows(); ++i) {
-      part<2>(result, i) = rowProduct<double, 2>(pattern.graph, values, x, pattern.graph.first[i],
-                                                 pattern.graph.first[i + 1]);
-    }
-    return result;
-  }
   BlockPattern pattern;
   Blocks<double, 2> values;
 };
+
+VectorOf<double> product(const BlockPattern& pattern, const Blocks<double, 2>& values,
+                         const VectorOf<double>& x) {
+  VectorOf<double> result(x.size());
+  for (std::size_t i = 0; i < pattern.rows(); ++i) {
+    part<2>(result, i) = rowProduct<double, 2>(pattern.graph, values, x, pattern.graph.first[i],
+                                               pattern.graph.first[i + 1]);
+  }
+  return result;
+}
+
+BlockPattern patternOf(const mesh::TriangleMesh& mesh) {
+  const auto start = mesh::foldFreeStart(mesh.faces, mesh::HalfEdges(mesh.faces),
+                                         mesh.vertices.cols(), mesh::testing::sharesOf(mesh), 0);
+  return mesh::MapEnergy(start.faces, start.shares, start.points, 1).pattern();
+}
+
+/// A matrix on a pattern whose diagonal is more than the sum of the others of each row.
+Blocks<double, 2> dominantMatrix(const BlockPattern& pattern) {
+  testing::Random random(4);
+  Blocks<double, 2> values(pattern.graph.neighbours.size(), Eigen::Matrix2d::Zero());
+  for (std::uint32_t i = 0; i < pattern.rows(); ++i) {
+    values[pattern.diagonal[i]] += 0.1 * Eigen::Matrix2d::Identity();
+    for (std::uint32_t e = pattern.graph.first[i]; e < pattern.graph.first[i + 1]; ++e) {
+      const std::uint32_t j = pattern.graph.neighbours[e];
+      if (j <= i) continue;
+      values[e] << random.between(-1, 1), random.between(-1, 1), random.between(-1, 1),
+          random.between(-1, 1);
+      values[pattern.place(j, i)] = values[e].transpose();
+      for (const std::uint32_t n : {i, j}) {
+        values[pattern.diagonal[n]] += values[e].norm() * Eigen::Matrix2d::Identity();
+      }
+    }
+  }
+  return values;
+}
 
 VectorOf<double> randomVector(std::size_t size) {
   testing::Random random(3);
   VectorOf<double> result(size);
   for (Eigen::Index i = 0; i < result.size(); ++i) result[i] = random.between(-1, 1);
   return result;
+}
+
+/// Blocks of the factor.
+double entries(const NestedDissection& dissection) {
+  double sum = 0;
+  for (const auto& part : dissection.parts) {
+    const double own = part.end - part.first;
+    sum += own * (own + part.boundary.size());
+  }
+  return sum;
 }
 
 TEST(NestedDissection, OrdersEveryNodeOnceAndBoundsFill) {
@@ -52,12 +92,15 @@ TEST(NestedDissection, OrdersEveryNodeOnceAndBoundsFill) {
     seen[i] = true;
   }
   EXPECT_EQ(dissection.order.size(), seen.size());
-  double entries = 0;
-  for (const auto& part : dissection.parts) {
-    const double own = part.end - part.first;
-    entries += own * (own + part.boundary.size());
+  EXPECT_LT(entries(dissection), 100 * seen.size());  // a band along a curve takes some 250 a row
+}
+
+TEST(NestedDissection, BoundsFillWhereAllNodesAreClose) {
+  for (const auto& shape : mesh::testing::shapesWithHubs(10'000)) {
+    const Graph graph = patternOf(shape.mesh).graph;
+    const NestedDissection dissection = nestedDissection(graph);
+    EXPECT_LT(entries(dissection), 50 * graph.size()) << shape.name;
   }
-  EXPECT_LT(entries, 100 * seen.size());  // a band along a curve takes some 250 a row
 }
 
 TEST(NestedDissection, TakesAnyNumberOfPieces) {
@@ -113,8 +156,95 @@ TEST(MultifrontalCholesky, Solves) {
     ASSERT_TRUE(inverse.refresh(scene.values));
     const VectorOf<double> x = randomVector(2 * scene.pattern.rows());
     VectorOf<double> found;
-    inverse.apply(scene.times(x), found);
+    inverse.apply(product(scene.pattern, scene.values, x), found);
     EXPECT_LT((found - x).norm(), 1e-9 * x.norm()) << level;
+  }
+}
+
+TEST(MultifrontalCholesky, SolvesWhereAllNodesAreClose) {
+  for (const auto& shape : mesh::testing::shapesWithHubs(3000)) {
+    const BlockPattern pattern = patternOf(shape.mesh);
+    const Blocks<double, 2> values = dominantMatrix(pattern);
+    const VectorOf<double> x = randomVector(2 * pattern.rows());
+    MultifrontalCholesky inverse(pattern, 2);
+    ASSERT_TRUE(inverse.refresh(values));
+    VectorOf<double> found;
+    inverse.apply(product(pattern, values, x), found);
+    EXPECT_LT((found - x).norm(), 1e-9 * x.norm()) << shape.name;
+  }
+}
+
+TEST(MultifrontalCholesky, EndsAtACheckpointAndBeginsAnew) {
+  const Case scene(4);
+  int left = 1 << 30;
+  const auto checkpoint = [&] {
+    if (--left < 0) throw std::domain_error("enough");
+  };
+  MultifrontalCholesky inverse(scene.pattern, 1, checkpoint), undisturbed(scene.pattern, 1);
+  const VectorOf<double> b = randomVector(2 * scene.pattern.rows());
+  VectorOf<double> expected, found;
+  ASSERT_TRUE(undisturbed.refresh(scene.values));
+  undisturbed.apply(b, expected);
+  for (const int checks : {0, 1, 40}) {
+    left = checks;
+    EXPECT_THROW(inverse.refresh(scene.values), std::domain_error);
+    left = 1 << 30;
+    ASSERT_TRUE(inverse.refresh(scene.values));
+    left = checks;
+    EXPECT_THROW(inverse.apply(b, found), std::domain_error);
+    left = 1 << 30;
+    inverse.apply(b, found);
+    EXPECT_EQ(found, expected);
+  }
+  left = 10;
+  EXPECT_THROW(nestedDissection(scene.pattern.graph, checkpoint), std::domain_error);
+}
+
+Graph withoutEdges(std::uint32_t nodes) {
+  Graph graph;
+  graph.first = {0};
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    graph.neighbours.push_back(i);
+    graph.first.push_back(i + 1);
+  }
+  return graph;
+}
+
+/// All nodes joined with each other.
+Graph complete(std::uint32_t nodes) {
+  Graph graph;
+  graph.first = {0};
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    for (std::uint32_t j = 0; j < nodes; ++j) graph.neighbours.push_back(j);
+    graph.first.push_back(static_cast<std::uint32_t>(graph.neighbours.size()));
+  }
+  return graph;
+}
+
+TEST(MinimumDegree, OrdersEveryNodeOnceInPostorder) {
+  std::vector<Graph> graphs = {withoutEdges(0), withoutEdges(100), complete(1),
+                               complete(30),    spider(5, 100),    spider(1000, 2)};
+  for (const auto& shape : mesh::testing::shapesWithHubs(2000)) {
+    graphs.push_back(patternOf(shape.mesh).graph);
+  }
+  for (const Graph& graph : graphs) {
+    SCOPED_TRACE(graph.size());
+    const auto groups = minimumDegree(graph);
+    std::vector<std::uint32_t> order, all(graph.size());
+    std::vector<std::size_t> first(groups.size());  // of the groups below each, and itself
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      order.insert(order.end(), groups[g].nodes.begin(), groups[g].nodes.end());
+      std::size_t expected = g;  // the root of what comes before
+      for (auto child = groups[g].children.rbegin(); child != groups[g].children.rend(); ++child) {
+        EXPECT_EQ(*child + 1, expected);
+        expected = first[*child];
+      }
+      first[g] = expected;
+    }
+    EXPECT_EQ(first.back(), 0u);
+    std::sort(order.begin(), order.end());
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_EQ(order, all);
   }
 }
 
