@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <queue>
 #include <tuple>
-
-#include "coverage.h"
+#include <utility>
 
 namespace spherical_springs::mesh {
 namespace {
@@ -14,14 +12,24 @@ namespace {
 using Index = std::int32_t;
 using Ring = std::vector<Index>;
 
+/// Removing a vertex takes as long as there are faces round it, but for a logarithm, however many
+/// there are round its neighbours.
 class Decimator {
  public:
-  Decimator(const Faces& faces, const Eigen::VectorXd& shares, Index vertices)
-      : faces_of_(vertices), stamps_(vertices, 0), left_(vertices) {
+  Decimator(const Faces& faces, const Eigen::VectorXd& shares, Index vertices,
+            const core::Checkpoint& checkpoint)
+      : checkpoint_(checkpoint),
+        faces_of_(vertices),
+        valences_(vertices, 0),
+        proposed_valences_(vertices, 0),
+        stamps_(vertices, 0),
+        mark_(vertices, 0),
+        left_(vertices) {
     for (Eigen::Index f = 0; f < faces.cols(); ++f) {
       faces_.push_back({{faces(0, f), faces(1, f), faces(2, f)}, shares[f]});
-      for (const Index v : faces_.back().vertices) {
-        faces_of_[v].push_back(static_cast<Index>(f));
+      for (int k = 0; k < 3; ++k) {
+        faces_of_[faces(k, f)].push_back(static_cast<Index>(f));
+        ++valences_[faces(k, f)];
       }
     }
     rings_.resize(vertices);
@@ -43,6 +51,8 @@ class Decimator {
   }
 
  private:
+  static constexpr Index kMany = 64;  // faces of a vertex, too many to be looked at often
+
   struct Face {
     std::array<Index, 3> vertices;
     double share;
@@ -57,57 +67,91 @@ class Decimator {
     }
   };
 
+  template <class Body>
+  void forEachFace(Index v, const Body& body) const {
+    for (const Index f : faces_of_[v]) {
+      if (!faces_[f].gone) body(f);
+    }
+  }
+
+  /// The corner of a face that follows `v`.
+  Index after(Index face, Index v) const {
+    const auto& [a, b, c] = faces_[face].vertices;
+    return v == a ? b : v == b ? c : a;
+  }
+
   /// Neighbours of `v` counter-clockwise, from `first` on or from any.
   Ring ringOf(Index v, Index first = -1) const {
     std::vector<std::pair<Index, Index>> pairs;
-    for (const Index f : faces_of_[v]) {
-      const auto& vertices = faces_[f].vertices;
-      const auto k = std::find(vertices.begin(), vertices.end(), v) - vertices.begin();
-      pairs.emplace_back(vertices[(k + 1) % 3], vertices[(k + 2) % 3]);
-    }
+    forEachFace(v, [&](Index f) {
+      const Index next = after(f, v);
+      pairs.emplace_back(next, after(f, next));
+    });
     Ring ring = {first < 0 ? pairs.front().first : first};
+    std::sort(pairs.begin(), pairs.end());
     while (ring.size() < pairs.size()) {
-      for (const auto& [a, b] : pairs) {
-        if (a != ring.back()) continue;
-        ring.push_back(b);
-        break;
-      }
+      ring.push_back(
+          std::lower_bound(pairs.begin(), pairs.end(), std::make_pair(ring.back(), Index(0)))
+              ->second);
     }
     return ring;
   }
 
-  std::size_t valence(Index v) const { return faces_of_[v].size(); }
+  bool areNeighbours(Index a, Index b) const {
+    if (valences_[b] < valences_[a]) std::swap(a, b);
+    const auto& faces = faces_of_[a];
+    return std::any_of(faces.begin(), faces.end(),
+                       [&](Index f) { return !faces_[f].gone && has(f, b); });
+  }
 
-  /// Whether moving `v` onto `u` leaves a mesh: the link condition, T. Dey and others, 1999.
+  /// Marks the ring round a vertex for `mayCollapse`.
+  void mark(const Ring& ring) {
+    ++marks_;
+    for (const Index w : ring) mark_[w] = marks_;
+  }
+
+  /// Whether moving `v`, whose ring is marked, onto `u` of that ring leaves a mesh: the link
+  /// condition, T. Dey and others, 1999.
   bool mayCollapse(const Ring& ring_of_v, Index u) const {
-    const Ring ring_of_u = ringOf(u);
     int common = 0;
-    for (const Index w : ring_of_u) {
-      common += std::count(ring_of_v.begin(), ring_of_v.end(), w);
+    if (valences_[u] <= std::max(kMany, static_cast<Index>(ring_of_v.size()))) {
+      forEachFace(u, [&](Index f) { common += mark_[after(f, u)] == marks_; });
+    } else {
+      for (const Index w : ring_of_v) common += w != u && areNeighbours(w, u);
     }
     return common == 2;
   }
 
   double cost(Index v, Index u, double star) const {
     constexpr double kMost = 7, kPenalty = 0.3;
-    const double excess = std::max(0., static_cast<double>(valence(u) + valence(v)) - 4 - kMost);
+    const double excess =
+        std::max(0., static_cast<double>(valences_[u] + valences_[v]) - 4 - kMost);
     return star * (1 + kPenalty * excess * excess);
   }
 
   void propose(Index v) {
+    checkpoint_();
     ++stamps_[v];
+    proposed_valences_[v] = valences_[v];
     double star = 0;
-    for (const Index f : faces_of_[v]) star += faces_[f].share;
+    forEachFace(v, [&](Index f) { star += faces_[f].share; });
     const Ring ring = ringOf(v);
-    Proposal best = {-1, v, -1, stamps_[v]};
-    for (const Index u : ring) {
-      const double c = cost(v, u, star);
-      if ((best.onto < 0 || c < best.cost) && mayCollapse(ring, u)) {
-        best.cost = c;
-        best.onto = u;
-      }
+    mark(ring);
+    std::vector<std::pair<double, std::size_t>> costs;
+    for (std::size_t i = 0; i < ring.size(); ++i) costs.emplace_back(cost(v, ring[i], star), i);
+    std::sort(costs.begin(), costs.end());
+    for (const auto& [c, i] : costs) {
+      if (!mayCollapse(ring, ring[i])) continue;
+      proposals_.push({c, v, ring[i], stamps_[v]});
+      return;
     }
-    if (best.onto >= 0) proposals_.push(best);
+  }
+
+  /// Whether the proposal for a vertex is too old. A vertex of many faces is late in the queue, so
+  /// that its proposal may stand until half of the faces are gone, or as many have come.
+  bool isOutdated(Index v) const {
+    const Index before = proposed_valences_[v];
+    return valences_[v] <= kMany || valences_[v] < before / 2 || valences_[v] > 2 * before;
   }
 
   bool collapseNext() {
@@ -115,8 +159,10 @@ class Decimator {
       const Proposal next = proposals_.top();
       proposals_.pop();
       if (next.stamp != stamps_[next.vertex]) continue;
-      // The ring of the other end may have changed since.
-      if (mayCollapse(ringOf(next.vertex), next.onto)) {
+      // The rings of both ends may have changed since.
+      const Ring ring = ringOf(next.vertex);
+      mark(ring);
+      if (mark_[next.onto] == marks_ && mayCollapse(ring, next.onto)) {
         collapse(next.vertex, next.onto);
         return true;
       }
@@ -128,20 +174,23 @@ class Decimator {
   void collapse(Index v, Index u) {
     Ring& ring = rings_[v];
     ring = ringOf(v, u);
-    const std::vector<Index> faces = faces_of_[v];
+    const std::vector<Index> faces = std::move(faces_of_[v]);
     for (const Index f : faces) {
-      if (has(f, u)) giveAway(f, v, u);
+      if (!faces_[f].gone && has(f, u)) giveAway(f, v, u, faces);
     }
     for (const Index f : faces) {
       if (faces_[f].gone) continue;
       std::replace(faces_[f].vertices.begin(), faces_[f].vertices.end(), v, u);
       faces_of_[u].push_back(f);
+      ++valences_[u];
     }
     faces_of_[v].clear();
     ++stamps_[v];
     removed_.push_back(v);
     --left_;
-    for (const Index w : ring) propose(w);
+    for (const Index w : ring) {
+      if (isOutdated(w)) propose(w);
+    }
   }
 
   bool has(Index face, Index v) const {
@@ -149,23 +198,29 @@ class Decimator {
     return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
   }
 
-  /// Leaves the share of a face between `v` and `u` to the next face round `v`.
-  void giveAway(Index face, Index v, Index u) {
+  /// Leaves the share of a face between `v` and `u` to the next of the `faces` round `v`.
+  void giveAway(Index face, Index v, Index u, const std::vector<Index>& faces) {
     Index third = -1;
+    faces_[face].gone = true;
     for (const Index w : faces_[face].vertices) {
       if (w != v && w != u) third = w;
-      if (w != v) {
-        auto& list = faces_of_[w];
-        list.erase(std::find(list.begin(), list.end(), face));
-      }
+      if (w != v) loseFace(w);
     }
-    faces_[face].gone = true;
-    for (const Index f : faces_of_[v]) {
+    for (const Index f : faces) {
       if (!faces_[f].gone && !has(f, u) && has(f, third)) {
         faces_[f].share += faces_[face].share;
         return;
       }
     }
+  }
+
+  /// Takes faces that are gone off a vertex's list when they are half of it.
+  void loseFace(Index v) {
+    --valences_[v];
+    auto& list = faces_of_[v];
+    if (list.size() < 2 * static_cast<std::size_t>(valences_[v])) return;
+    list.erase(std::remove_if(list.begin(), list.end(), [&](Index f) { return faces_[f].gone; }),
+               list.end());
   }
 
   void addLevel() {
@@ -207,9 +262,14 @@ class Decimator {
     return result;
   }
 
+  const core::Checkpoint& checkpoint_;
   std::vector<Face> faces_;
-  std::vector<std::vector<Index>> faces_of_;  // of each vertex
+  std::vector<std::vector<Index>> faces_of_;  // of each vertex, and some that are gone
+  std::vector<Index> valences_;               // faces of each vertex that are not gone
+  std::vector<Index> proposed_valences_;      // when there was the last proposal
   std::vector<unsigned> stamps_;              // of the last proposal for each vertex
+  std::vector<unsigned> mark_;                // of each vertex: `marks_` in the ring marked last
+  unsigned marks_ = 0;
   std::priority_queue<Proposal> proposals_;
   std::vector<Ring> rings_;
   std::vector<Index> removed_;
@@ -217,57 +277,11 @@ class Decimator {
   Index left_;
 };
 
-double angleAt(const Vector3& p, const Vector3& from, const Vector3& to) {
-  return std::atan2(core::tripleProduct(p, from, to), p.cross(from).dot(p.cross(to)));
-}
-
-/// Area of the smallest face that `p` makes with its ring; negative where one may be folded.
-double leastFace(const Vector3& p, const Ring& ring, const Points& points) {
-  double least = 4 * core::kPi;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Vector3 a = points.col(ring[i]), b = points.col(ring[(i + 1) % ring.size()]);
-    if (!surelyPositive(p, a, b)) return -1;
-    least = std::min(least, core::solidAngle(p, a, b));
-  }
-  return least;
-}
-
 }  // namespace
 
 Decimation decimation(const Faces& faces, const Eigen::VectorXd& shares, Index vertices,
-                      Index coarsest) {
-  return Decimator(faces, shares, vertices).run(coarsest);
-}
-
-/// Close enough to the first of the ring, on the bisector of the ring's angle there, all faces are
-/// positive.
-Vector3 placeInside(const Ring& ring, const Points& points) {
-  const Vector3 corner = points.col(ring[0]);
-  double angle = 0;
-  for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-    angle += angleAt(corner, points.col(ring[i]), points.col(ring[i + 1]));
-  }
-  const Vector3 second = points.col(ring[1]);
-  const Vector3 along = (second - second.dot(corner) * corner).normalized();
-  const Vector3 inward =
-      std::cos(0.5 * angle) * along + std::sin(0.5 * angle) * corner.cross(along);
-  Vector3 centre = Vector3::Zero();
-  double length = 0;
-  for (const Index w : ring) {
-    centre += points.col(w);
-    length = std::max(length, (points.col(w) - corner).norm());
-  }
-  Vector3 best = centre.normalized();
-  double least = leastFace(best, ring, points);
-  for (int halving = 0; halving < 50; ++halving, length *= 0.6) {
-    const Vector3 place = (corner + length * inward).normalized();
-    const double smallest = leastFace(place, ring, points);
-    if (smallest > least) {
-      least = smallest;
-      best = place;
-    }
-  }
-  return best;
+                      Index coarsest, const core::Checkpoint& checkpoint) {
+  return Decimator(faces, shares, vertices, checkpoint).run(coarsest);
 }
 
 }  // namespace spherical_springs::mesh

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint.h"
 #include "spherical_springs/mesh/triangle_mesh.h"
 
 namespace spherical_springs::mesh {
@@ -26,13 +27,9 @@ struct Decimation {
   std::vector<MeshLevel> levels;  ///< from the coarsest to the mesh itself
 };
 
-/// Levels with about a third of the vertices of the next, down to about `coarsest`.
+/// Makes levels with about a third of the vertices of the next, down to about `coarsest`, in
+/// n log n time.
 Decimation decimation(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
-                      std::int32_t coarsest);
-
-/// Puts vertex `ring.size()` ...
-/// A place for a vertex inside its ring, whose vertices are on the sphere and make positive faces
-/// with the first of them: so that all its own faces are positive.
-Vector3 placeInside(const std::vector<std::int32_t>& ring, const Points& points);
+                      std::int32_t coarsest, const core::Checkpoint& checkpoint = core::passAll);
 
 }  // namespace spherical_springs::mesh

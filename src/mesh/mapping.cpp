@@ -10,6 +10,7 @@
 #include "coverage.h"
 #include "fold_free_start.h"
 #include "half_edges.h"
+#include "insertion.h"
 
 namespace spherical_springs::mesh {
 namespace {

@@ -4,11 +4,12 @@
 #include <Eigen/LU>
 #include <set>
 
+#include "hub_shapes.h"
 #include "mesh/coverage.h"
 #include "mesh/decimation.h"
 #include "mesh/fold_free_start.h"
+#include "mesh/insertion.h"
 #include "mesh/schnyder_wood.h"
-#include "shapes.h"
 #include "spherical_springs/mesh/sphere_map.h"
 #include "spherical_springs/mesh/topological_sphere.h"
 
@@ -132,6 +133,31 @@ TEST(Decimation, LevelsAreSpheresDownToTheSmallest) {
           << shape.name;
     }
   }
+}
+
+TEST(Decimation, TakesVerticesOfManyFaces) {
+  for (const auto& shape : testing::shapesWithHubs(20'000)) {
+    const auto count = static_cast<std::int32_t>(shape.mesh.vertices.cols());
+    const Decimation meshes = decimation(shape.mesh.faces, sharesOf(shape.mesh), count, 100);
+    EXPECT_EQ(meshes.levels.front().vertex_count, 100) << shape.name;
+    for (const MeshLevel& level : meshes.levels) {
+      EXPECT_NO_THROW(requireTopologicalSphere({Points::Zero(3, level.vertex_count), level.faces}))
+          << shape.name;
+    }
+  }
+}
+
+TEST(Decimation, PassesACheckpointWithEachVertex) {
+  const TriangleMesh mesh = testing::doublePyramid(1000);
+  const Eigen::VectorXd shares = sharesOf(mesh);
+  int left = 2000;
+  EXPECT_NO_THROW(decimation(mesh.faces, shares, 1002, 900, [&] { --left; }));
+  EXPECT_LT(left, 900);
+  EXPECT_THROW(decimation(mesh.faces, shares, 1002, 4,
+                          [&] {
+                            if (--left < 0) throw std::domain_error("enough");
+                          }),
+               std::domain_error);
 }
 
 TEST(Decimation, StopsAtATetrahedron) {
