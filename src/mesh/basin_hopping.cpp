@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "../parallel.h"
+#include "map_clock.h"
 #include "map_descent.h"
 
 namespace spherical_springs::mesh {
@@ -41,10 +42,12 @@ Points scattered(const Patch& patch, Points points, std::mt19937& random) {
 /// Descents of the energy of a patch.
 class PatchDescent {
  public:
-  PatchDescent(const Patch& patch, const Points& points, double shape)
+  PatchDescent(const Patch& patch, const Points& points, double shape,
+               const core::Checkpoint& checkpoint)
       : energy_(patch.faces, patch.shares, points, patch.free, 1),
         descent_(energy_, 1),
-        shape_(shape) {}
+        shape_(shape),
+        checkpoint_(checkpoint) {}
 
   double value() const { return energy_.valueHere(); }
   Points points() const { return energy_.points(); }
@@ -76,23 +79,28 @@ class PatchDescent {
 
   /// @return the energy where it ends.
   double descend(FaceHessian hessian, double slow, int most_steps) {
-    descent_.run(hessian, slow, [&] { return most_steps-- > 0; });
+    descent_.run(hessian, slow, [&] {
+      checkpoint_();
+      return most_steps-- > 0;
+    });
     return value();
   }
 
   MapEnergy energy_;
   MapDescent descent_;
   double shape_;
+  const core::Checkpoint& checkpoint_;
 };
 
 }  // namespace
 
 BasinHopping::BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
-                           double shape, int threads)
+                           double shape, int threads, core::Checkpoint checkpoint)
     : faces_(faces),
       shares_(shares),
       shape_(shape),
       threads_(threads),
+      checkpoint_(std::move(checkpoint)),
       cutter_(faces, shares, vertices) {}
 
 /// One a face.
@@ -136,14 +144,18 @@ std::vector<BasinHopping::Hop> BasinHopping::drawHops(const Points& map) {
 Points BasinHopping::landing(const Hop& hop, const Points& points) const {
   constexpr int kTries = 8;
   constexpr double kRough = 1e-2;  // more steps are lost where a hop goes elsewhere
-  PatchDescent descent(hop.patch, points, shape_);
-  double least = descent.settle(points, kRough);
-  Points lowest = descent.points();
-  std::mt19937 random(hop.seed);
-  for (int tried = 0; tried < kTries; ++tried) {
-    if (!descent.unfolds(scattered(hop.patch, lowest, random), least)) continue;
+  Points lowest = points;
+  try {
+    PatchDescent descent(hop.patch, points, shape_, checkpoint_);
+    double least = descent.settle(points, kRough);
     lowest = descent.points();
-    least = descent.value();
+    std::mt19937 random(hop.seed);
+    for (int tried = 0; tried < kTries; ++tried) {
+      if (!descent.unfolds(scattered(hop.patch, lowest, random), least)) continue;
+      lowest = descent.points();
+      least = descent.value();
+    }
+  } catch (const TimeIsOver&) {  // with the lowest so far
   }
   return lowest;
 }

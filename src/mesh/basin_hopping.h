@@ -18,9 +18,9 @@ namespace spherical_springs::mesh {
 class BasinHopping {
  public:
   /// Of a closed mesh, with the weight of the shape of its faces in their energy; what is passed
-  /// must live longer.
+  /// must live longer. Where `checkpoint` throws TimeIsOver, hops stay as low as they have come.
   BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
-               double shape, int threads);
+               double shape, int threads, core::Checkpoint checkpoint = core::passAll);
 
   /// Makes a round of hops of several patches from a map that covers the sphere once.
   /// @return the share by which the energy has fallen.
@@ -40,6 +40,7 @@ class BasinHopping {
   const Eigen::VectorXd& shares_;
   double shape_;
   int threads_;
+  core::Checkpoint checkpoint_;
   PatchCutter cutter_;
   std::mt19937 random_;
 };

@@ -4,8 +4,8 @@
 
 namespace spherical_springs::mesh {
 
-MapDescent::MapDescent(MapEnergy& energy, int threads)
-    : energy_(energy), inverse_(energy.pattern(), threads) {}
+MapDescent::MapDescent(MapEnergy& energy, int threads, const core::Checkpoint& checkpoint)
+    : energy_(energy), inverse_(energy.pattern(), threads, checkpoint) {}
 
 bool MapDescent::solve() {
   shifted_ = energy_.hessian();

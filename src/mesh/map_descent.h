@@ -9,8 +9,9 @@ namespace spherical_springs::mesh {
 /// round its vertex. A step is cut until no face folds and the energy falls.
 class MapDescent {
  public:
-  /// `energy` must live longer.
-  MapDescent(MapEnergy& energy, int threads);
+  /// `energy` must live longer. What `checkpoint` throws ends a step, with vertices where they
+  /// were.
+  MapDescent(MapEnergy& energy, int threads, const core::Checkpoint& checkpoint = core::passAll);
 
   /// Begins anew, wherever vertices are now.
   void restart() { shift_ = kFirstShift; }

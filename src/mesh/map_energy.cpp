@@ -57,14 +57,16 @@ std::vector<std::uint32_t> freeFirst(const Points& points, std::int32_t free) {
 }  // namespace
 
 MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
-                     int threads)
-    : MapEnergy(faces, shares, points, static_cast<std::int32_t>(points.cols()), threads) {
+                     int threads, const core::Checkpoint& checkpoint)
+    : MapEnergy(faces, shares, points, static_cast<std::int32_t>(points.cols()), threads,
+                checkpoint) {
   area_ = 4 * core::kPi;
 }
 
 MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
-                     std::int32_t free, int threads)
+                     std::int32_t free, int threads, const core::Checkpoint& checkpoint)
     : threads_(threads),
+      checkpoint_(checkpoint),
       free_(free),
       vertices_(freeFirst(points, free)),
       faces_(faces),
@@ -75,7 +77,9 @@ MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Po
   for (Eigen::Index c = 0; c < faces.size(); ++c) faces_(c) = numbers[faces(c)];
 
   first_corner_ = firstCorners(faces_, count);
+  checkpoint_();
   pattern_ = core::BlockPattern(meshGraph(faces_, free), threads);
+  checkpoint_();
   corners_.resize(faces_.size());
   places_.resize(faces_.size(), {kNone, kNone, kNone});
   std::vector<std::uint32_t> next(first_corner_.begin(), first_corner_.end() - 1);
@@ -91,6 +95,7 @@ MapEnergy::MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Po
   terms_.resize(faces_.cols());
   gradient_.resize(2 * static_cast<Eigen::Index>(free));
   hessian_.resize(pattern_.graph.neighbours.size());
+  checkpoint_();
   order_ = core::blockOrder(pattern_.graph, kSweepBlock, threads);
   setWeights(FaceWeights::equal);
   place(points);
@@ -165,11 +170,14 @@ FaceEnergy::Terms MapEnergy::terms(Eigen::Index face, FaceHessian hessian) const
 }
 
 void MapEnergy::evaluate(FaceHessian hessian) {
+  constexpr std::ptrdiff_t kBetweenChecks = 256;  // faces or vertices
   value_ = core::parallelSum(faceCount(), threads_, [&](std::ptrdiff_t f) {
+    if (f % kBetweenChecks == 0) checkpoint_();
     terms_[f] = terms(f, hessian);
     return terms_[f].value;
   });
   core::parallelFor(pattern_.rows(), threads_, [&](std::ptrdiff_t n) {
+    if (n % kBetweenChecks == 0) checkpoint_();
     const core::Graph& graph = pattern_.graph;
     for (std::uint32_t e = graph.first[n]; e < graph.first[n + 1]; ++e) hessian_[e].setZero();
     gradient_.segment<2>(2 * n).setZero();
@@ -232,13 +240,23 @@ void MapEnergy::moveAlone(std::size_t n) {
   }
 }
 
-void MapEnergy::sweep() {
-  std::vector<Vector3> before = points_;
+void MapEnergy::moveEachAlone() {
   order_.apart.forEach(threads_, [&](std::uint32_t block) {
+    checkpoint_();
     for (std::uint32_t n = order_.first_node[block]; n < order_.first_node[block + 1]; ++n) {
       moveAlone(n);
     }
   });
+}
+
+void MapEnergy::sweep() {
+  std::vector<Vector3> before = points_;
+  try {
+    moveEachAlone();
+  } catch (...) {
+    put(std::move(before));
+    throw;
+  }
   if (valueAt(points_) < kInfinity) return;
   put(std::move(before));  // positive faces round a vertex alone may cover a part twice
 }

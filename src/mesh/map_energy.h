@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "../checkpoint.h"
 #include "../minimisation/block_matrix.h"
 #include "face_energy.h"
 
@@ -22,13 +23,15 @@ class MapEnergy {
  public:
   using Hessian = core::Blocks<double, 2>;
 
-  /// `points`: about where vertices are, for their order.
-  MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points, int threads);
+  /// `points`: about where vertices are, for their order. What `checkpoint` throws ends `evaluate`
+  /// or `sweep`, with vertices where they were.
+  MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points, int threads,
+            const core::Checkpoint& checkpoint = core::passAll);
 
   /// Of a patch of a map: the first `free` points, all of whose faces it has, move, and the others
   /// stay.
   MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
-            std::int32_t free, int threads);
+            std::int32_t free, int threads, const core::Checkpoint& checkpoint = core::passAll);
 
   const core::BlockPattern& pattern() const { return pattern_; }
   Eigen::Index faceCount() const { return faces_.cols(); }
@@ -75,10 +78,12 @@ class MapEnergy {
   Eigen::Vector2d ownStep(std::size_t n) const;
   double ownValue(std::size_t n, const Vector3& point) const;
   void moveAlone(std::size_t n);
+  void moveEachAlone();
   void put(std::vector<Vector3> points);
   std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
   int threads_;
+  core::Checkpoint checkpoint_;
   std::int32_t free_;
   double area_ = 0;  // of all faces together
   double shape_ = 0;

@@ -47,41 +47,47 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 }  // namespace
 
 Points Mapping::run(const std::optional<Points>& start) {
-  constexpr double kPromising = 10;  // tolerances
-  // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices, and
-  // of a small coarsest mesh and the mesh itself wherever that is one to begin with.
-  const double several =
-      std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
-  std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
   Candidates candidates;
-  if (start) add(roundedOff(*start), candidates);
-  int tried = 0;
   Candidate best;
-  while (!has_map_ || (best.spread > wantedSpread() && goOn())) {
-    const bool promising =
-        !candidates.empty() &&
-        (candidates.back().spread < kPromising * wantedSpread() || tried >= several || ended_);
-    if (!promising && !sizes.empty()) {
-      if (auto next = prepared(sizes.front())) add(std::move(*next), candidates);
-      sizes.erase(sizes.begin());
-      ++tried;
-    } else if (!candidates.empty()) {
-      Candidate next = finished(candidates.back().points);
-      candidates.pop_back();
-      tried = 0;
-      if (next.spread < best.spread) best = std::move(next);
-    } else {
-      break;
-    }
+  try {
+    search(start, candidates, best);
+  } catch (const TimeIsOver&) {  // with what has been found
   }
   if (best.points.size() == 0 && !candidates.empty()) best = candidates.back();
   if (best.points.size() == 0) throw NoMap("no map without folds was found");
   return best.points;
 }
 
+void Mapping::search(const std::optional<Points>& start, Candidates& candidates, Candidate& best) {
+  constexpr double kPromising = 10;  // tolerances
+  // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices, and
+  // of a small coarsest mesh and the mesh itself wherever that is one to begin with.
+  const double several =
+      std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
+  std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
+  if (start) add(roundedOff(*start), candidates);
+  int tried = 0;
+  while (!clock_.hasMap() || (best.spread > wantedSpread() && clock_.goOn())) {
+    const bool promising =
+        !candidates.empty() && (candidates.back().spread < kPromising * wantedSpread() ||
+                                tried >= several || clock_.ended());
+    if (!promising && !sizes.empty()) {
+      if (auto next = prepared(sizes.front())) add(std::move(*next), candidates);
+      sizes.erase(sizes.begin());
+      ++tried;
+    } else if (!candidates.empty()) {
+      Candidate next = finished(candidates.back());
+      candidates.pop_back();
+      tried = 0;
+      if (best.points.size() == 0 || next.spread < best.spread) best = std::move(next);
+    } else {
+      break;
+    }
+  }
+}
+
 /// Best last.
 void Mapping::add(Candidate candidate, Candidates& candidates) {
-  has_map_ = true;
   candidates.push_back(std::move(candidate));
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& a, const Candidate& b) { return a.spread > b.spread; });
@@ -104,7 +110,7 @@ std::optional<Points> Mapping::coarsestMap(const MeshLevel& level) {
   faces.resize(std::min(faces.size(), kMostCuts));
   for (const Eigen::Index cut : faces) {
     if (auto points = coarsestMap(level, cut)) return points;
-    if (has_map_ && ended_) break;
+    if (clock_.ended()) break;
   }
   return {};
 }
@@ -116,15 +122,16 @@ std::optional<Points> Mapping::coarsestMap(const MeshLevel& level, Eigen::Index 
   constexpr double kLeastShape = 1e-4;
   const FoldFreeStart start =
       foldFreeStart(level.faces, HalfEdges(level.faces), level.vertex_count, level.shares, cut);
-  MapEnergy energy(start.faces, start.shares, start.points, options_.threads);
+  MapEnergy energy(start.faces, start.shares, start.points, options_.threads, checkpoint_);
   energy.setWeights(FaceWeights::root_of_share);
-  MapDescent descent(energy, options_.threads);
+  MapDescent descent(energy, options_.threads, checkpoint_);
   int iterations = 0;
-  const auto given_up = [&] { return iterations >= kMostIterations || (has_map_ && ended_); };
+  const auto given_up = [&] { return iterations >= kMostIterations || clock_.ended(); };
   for (double shape = 1; shape > kLeastShape && !given_up(); shape *= kLowering) {
     energy.setShape(shape);
-    descent.runWithSweeps(FaceHessian::definite, kSlow,
-                          [&] { return ++iterations < kMostIterations && (goOn() || !has_map_); });
+    descent.runWithSweeps(FaceHessian::definite, kSlow, [&] {
+      return ++iterations < kMostIterations && (clock_.goOn() || !clock_.hasMap());
+    });
     Points points = energy.points().leftCols(level.vertex_count);
     if (coversOnce(level.faces, points)) return points;
   }
@@ -140,13 +147,16 @@ std::optional<Points> Mapping::evenedOut(const Decimation& meshes) {
   for (const MeshLevel& level : meshes.levels) {
     auto v = static_cast<std::int32_t>(points.cols());
     points.conservativeResize(3, level.vertex_count);
-    for (; v < level.vertex_count; ++v) points.col(v) = placeInside(meshes.rings[v], points);
-    MapEnergy energy(level.faces, level.shares, points, options_.threads);
-    MapDescent descent(energy, options_.threads);
+    for (; v < level.vertex_count; ++v) {
+      clock_.check();
+      points.col(v) = placeInside(meshes.rings[v], points);
+    }
+    MapEnergy energy(level.faces, level.shares, points, options_.threads, checkpoint_);
+    MapDescent descent(energy, options_.threads, checkpoint_);
     energy.setWeights(FaceWeights::root_of_share);
     energy.setShape(kRoundest);
-    for (int i = 0; i < kSweepsBefore && goOn(); ++i) energy.sweep();
-    descent.runWithSweeps(FaceHessian::definite, kSlow, [&] { return goOn(); });
+    for (int i = 0; i < kSweepsBefore && clock_.goOn(); ++i) energy.sweep();
+    descent.runWithSweeps(FaceHessian::definite, kSlow, [&] { return clock_.goOn(); });
     points = energy.points();
   }
   if (!coversOnce(meshes.levels.back().faces, points)) return {};
@@ -159,10 +169,10 @@ std::optional<Points> Mapping::evenedOut(const Decimation& meshes) {
 /// is no map, on the way there with shares that differ less and less.
 std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
   constexpr int kMostRoots = 5;  // from a range of 1e6 to 1.5
-  Decimation meshes = decimation(faces_, shares_, vertices_, size);
+  Decimation meshes = decimation(faces_, shares_, vertices_, size, checkpoint_);
   for (int root = 0; root <= kMostRoots; ++root) {
     if (const auto points = evenedOut(meshes)) return roundedOff(*points);
-    if (has_map_) break;
+    if (clock_.hasMap()) break;
     for (MeshLevel& level : meshes.levels) {
       level.shares = level.shares.cwiseSqrt();
       level.shares *= 4 * core::kPi / level.shares.sum();
@@ -175,28 +185,41 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
 Mapping::Candidate Mapping::roundedOff(const Points& points) {
   constexpr double kLeastShape = 1e-5;
   constexpr double kAlikeFrom = 1e-3;  // where areas are right enough for all faces to count alike
-  MapEnergy energy(faces_, shares_, points, options_.threads);
-  MapDescent descent(energy, options_.threads);
-  for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
-       shape *= kLowering) {
-    energy.setShape(shape);
-    energy.setWeights(shape > kAlikeFrom ? FaceWeights::root_of_share : FaceWeights::equal);
-    descent.runWithSweeps(FaceHessian::gauss_newton, kSlow, [&] { return wanting(energy); });
-  }
-  return {energy.points(), energy.spread()};
+  clock_.haveMap();
+  return improved({points}, [&](MapEnergy& energy, MapDescent& descent) {
+    for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
+         shape *= kLowering) {
+      energy.setShape(shape);
+      energy.setWeights(shape > kAlikeFrom ? FaceWeights::root_of_share : FaceWeights::equal);
+      descent.runWithSweeps(FaceHessian::gauss_newton, kSlow, [&] { return wanting(energy); });
+    }
+  });
 }
 
 /// Minimises the energy that is wanted.
-Mapping::Candidate Mapping::finished(const Points& points) {
-  MapEnergy energy(faces_, shares_, points, options_.threads);
-  MapDescent descent(energy, options_.threads);
-  if (options_.angle_weight > 0) {
-    energy.setShape(options_.angle_weight);
-    descent.run(FaceHessian::exact, kNothing, [&] { return goOn(); });
-  } else {
-    finishAreas(energy, descent);
+Mapping::Candidate Mapping::finished(const Candidate& candidate) {
+  return improved(candidate, [&](MapEnergy& energy, MapDescent& descent) {
+    if (options_.angle_weight > 0) {
+      energy.setShape(options_.angle_weight);
+      descent.run(FaceHessian::exact, kNothing, [&] { return clock_.goOn(); });
+    } else {
+      finishAreas(energy, descent);
+    }
+  });
+}
+
+/// Returns how far `improve(energy, descent)` comes from a map before the time is over.
+template <class Improve>
+Mapping::Candidate Mapping::improved(const Candidate& from, const Improve& improve) {
+  std::optional<MapEnergy> energy;
+  try {
+    energy.emplace(faces_, shares_, from.points, options_.threads, checkpoint_);
+    MapDescent descent(*energy, options_.threads, checkpoint_);
+    improve(*energy, descent);
+  } catch (const TimeIsOver&) {
+    if (!energy) return from;
   }
-  return {energy.points(), energy.spread()};
+  return {energy->points(), energy->spread()};
 }
 
 /// Steps of all vertices and hops of patches in turn, more of what lowers the energy more: what is
@@ -205,7 +228,7 @@ void Mapping::finishAreas(MapEnergy& energy, MapDescent& descent) {
   constexpr int kFewSteps = 8, kManySteps = 64, kMostInVain = 10;
   constexpr double kLittle = 1e-3;  // fall of the energy, as a share
   energy.setShape(kFaint);
-  BasinHopping hopping(faces_, shares_, vertices_, kFaint, options_.threads);
+  BasinHopping hopping(faces_, shares_, vertices_, kFaint, options_.threads, checkpoint_);
   int steps = kFewSteps, in_vain = 0;
   while (wanting(energy) && in_vain < kMostInVain) {
     const double before = energy.valueHere();
@@ -234,14 +257,7 @@ bool Mapping::hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile
 
 /// Whether to go on, towards the tolerance unless areas are not all that counts.
 bool Mapping::wanting(const MapEnergy& energy) {
-  return goOn() && (options_.angle_weight > 0 || energy.spread() > options_.tolerance);
-}
-
-bool Mapping::goOn() {
-  const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
-  const bool in_time = elapsed < options_.max_time;
-  if (!options_.go_on(in_time ? elapsed / options_.max_time : 1) || !in_time) ended_ = true;
-  return !ended_;
+  return clock_.goOn() && (options_.angle_weight > 0 || energy.spread() > options_.tolerance);
 }
 
 }  // namespace spherical_springs::mesh

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <chrono>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "basin_hopping.h"
 #include "decimation.h"
+#include "map_clock.h"
 #include "map_descent.h"
 #include "spherical_springs/mesh/sphere_map.h"
 
@@ -18,40 +18,39 @@ class Mapping {
   /// What is passed must live longer.
   Mapping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
           const MapOptions& options)
-      : faces_(faces), shares_(shares), vertices_(vertices), options_(options) {}
+      : faces_(faces), shares_(shares), vertices_(vertices), options_(options), clock_(options) {}
 
   /// `start`, if any, must cover the sphere once.
   Points run(const std::optional<Points>& start);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   struct Candidate {
     Points points;
     double spread = std::numeric_limits<double>::infinity();
   };
   using Candidates = std::vector<Candidate>;
 
+  void search(const std::optional<Points>& start, Candidates& candidates, Candidate& best);
   void add(Candidate candidate, Candidates& candidates);
   std::optional<Points> coarsestMap(const MeshLevel& level);
   std::optional<Points> coarsestMap(const MeshLevel& level, Eigen::Index cut);
   std::optional<Points> evenedOut(const Decimation& meshes);
   std::optional<Candidate> prepared(std::int32_t size);
   Candidate roundedOff(const Points& points);
-  Candidate finished(const Points& points);
+  Candidate finished(const Candidate& candidate);
+  template <class Improve>
+  Candidate improved(const Candidate& from, const Improve& improve);
   void finishAreas(MapEnergy& energy, MapDescent& descent);
   bool hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile);
   double wantedSpread() const;
   bool wanting(const MapEnergy& energy);
-  bool goOn();
 
   const Faces& faces_;
   const Eigen::VectorXd& shares_;
   const std::int32_t vertices_;
   const MapOptions& options_;
-  const Clock::time_point begin_ = Clock::now();
-  bool ended_ = false;
-  bool has_map_ = false;
+  MapClock clock_;
+  const core::Checkpoint checkpoint_ = [this] { clock_.check(); };
 };
 
 }  // namespace spherical_springs::mesh

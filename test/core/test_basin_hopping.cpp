@@ -6,6 +6,7 @@
 #include "hub_shapes.h"
 #include "mesh/basin_hopping.h"
 #include "mesh/coverage.h"
+#include "mesh/map_clock.h"
 #include "mesh/map_descent.h"
 #include "spherical_springs/mesh/sphere_map.h"
 
@@ -149,6 +150,32 @@ TEST(BasinHopping, IsTheSameForAnyNumberOfThreads) {
   BasinHopping(stuck.mesh.faces, stuck.shares, 162, 0, 2).hop(two);
   EXPECT_NE(one, stuck.map);
   EXPECT_EQ(one, two);
+}
+
+TEST(BasinHopping, StaysAsLowAsItHasComeWhenTimeIsOver) {
+  const Stuck stuck(2);
+  for (const int checks : {0, 10, 100}) {
+    int left = checks;
+    Points map = stuck.map;
+    BasinHopping hopping(stuck.mesh.faces, stuck.shares, 162, 0, 1, [&] {
+      if (--left < 0) throw TimeIsOver();
+    });
+    EXPECT_GE(hopping.hop(map), 0);
+    EXPECT_EQ(map == stuck.map, checks == 0);
+    EXPECT_TRUE(coversOnce(stuck.mesh.faces, map));
+    EXPECT_LT(left, 0);
+  }
+}
+
+TEST(BasinHopping, LeavesTheMapAloneWhereACheckpointThrows) {
+  const Stuck stuck(2);
+  int left = 100;
+  Points map = stuck.map;
+  BasinHopping hopping(stuck.mesh.faces, stuck.shares, 162, 0, 1, [&] {
+    if (--left < 0) throw std::domain_error("enough");
+  });
+  EXPECT_THROW(hopping.hop(map), std::domain_error);
+  EXPECT_EQ(map, stuck.map);
 }
 
 TEST(BasinHopping, BearsMeshesOfAFewFaces) {

@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "hub_shapes.h"
 #include "mesh/coverage.h"
-#include "shapes.h"
 #include "spherical_springs/mesh/sphere_map.h"
 
 namespace spherical_springs::mesh {
@@ -137,6 +137,27 @@ TEST(SphereMap, EndsWithAMapWhenItIsCancelled) {
   options.go_on = [&](double) { return ++calls != 5; };
   EXPECT_TRUE(coversOnce(mesh.faces, sphereMap(mesh, sharesOf(mesh), options)));
   EXPECT_LT(calls, 100);
+}
+
+// Also in the middle of an iteration, which takes several checks here.
+TEST(SphereMap, EndsWithAMapWhereverItIsCancelled) {
+  const TriangleMesh mesh = testing::star(5, 2, false, 5);
+  const Eigen::VectorXd shares = sharesOf(mesh);
+  for (const int most : {1, 10, 50, 100}) {
+    MapOptions options = patient(0);
+    int calls = 0;
+    options.go_on = [&](double) { return ++calls < most; };
+    EXPECT_TRUE(coversOnce(mesh.faces, sphereMap(mesh, shares, options))) << most;
+  }
+}
+
+TEST(SphereMap, OfVerticesOfManyFaces) {
+  for (const auto& shape : testing::shapesWithHubs(20'000)) {
+    MapOptions options;
+    options.max_time = 2;
+    const Points points = sphereMap(shape.mesh, sharesOf(shape.mesh), options);
+    EXPECT_TRUE(coversOnce(shape.mesh.faces, points)) << shape.name;
+  }
 }
 
 // Shares that differ this much need many iterations before the first map.

@@ -23,11 +23,11 @@ struct MapOptions {
   double angle_weight = 0;
   /// Wanted standard deviation of the logarithms of area over share; better ones are not sought.
   double tolerance = 1e-3;
-  double max_time = 20;  ///< wall [s]; the best map so far comes out when it is over
+  double max_time = 20;  ///< wall [s]; then the best map so far comes out, or the first
   int threads = 1;       ///< results do not depend on it, to the last bit, unless time runs out
-  /// Called after every iteration with the share of the time that is over, from 0 to 1; returning
-  /// false once ends it with the best map so far, or with the first where there is none yet. What
-  /// it throws comes out.
+  /// Called on the thread of the caller, several times a second in every phase, with the share of
+  /// the time that is over, from 0 to 1. Returning false once ends the search with the best map so
+  /// far, or with the first where there is none yet. What it throws comes out.
   std::function<bool(double fraction)> go_on = [](double) { return true; };
 };
 
