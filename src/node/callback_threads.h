@@ -19,7 +19,7 @@ class CallbackThreads {
   CallbackThreads(const CallbackThreads&) = delete;
   CallbackThreads& operator=(const CallbackThreads&) = delete;
 
-  /// What uses it must go before these threads.
+  /// The queue, for things that must not outlive these threads.
   ros::CallbackQueueInterface& queue() { return queue_; }
 
   /// `node` with this queue: its timers, services and listeners call back here.

@@ -34,7 +34,7 @@ class MarkerPublisher {
   void publishChanges();
   void remember(core::Runner::Snapshot&& moment, Markers&& markers) noexcept;
   void forget(std::size_t marker) noexcept;
-  /// With the sphere, which is small, and with headers.
+  /// Adds the sphere, which is small, and headers.
   visualization_msgs::MarkerArray arrayOf(std::vector<visualization_msgs::Marker> markers) const;
 
   // Read-only.

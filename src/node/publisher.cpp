@@ -77,7 +77,7 @@ void Publisher::publishStatusIfDue() {
   }
 }
 
-/// Of the time since this was called last.
+/// The time of the steps since the last call, as a share of the wall's.
 double Publisher::realTimeFactor(const core::State& state) {
   const auto now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - last_status_).count();

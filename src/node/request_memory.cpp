@@ -45,7 +45,7 @@ bool giveReserve() {
   return false;
 }
 
-/// What C++ calls when an allocation has failed: it tries again when this returns.
+/// Called by C++ when an allocation has failed, which is tried again when this returns.
 void onNoMemory() {
   if (!reads_requests) throw std::bad_alloc();
   if (giveReserve()) return;

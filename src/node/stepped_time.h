@@ -10,8 +10,8 @@ class SteppedTime {
  public:
   explicit SteppedTime(double time_step) : time_step_(time_step) {}
 
-  /// To be told now and then how many steps have been done since the scene's time was last 0.
-  /// @return the time of the steps since it was last told [s].
+  /// Takes the number of steps since the scene's time was last 0, now and then.
+  /// @return the time of the steps since the last call [s].
   double add(std::uint64_t steps) {
     // A scene that is loaded, cleared or reset counts its steps from 0 again.
     const std::uint64_t more = steps < steps_ ? steps : steps - steps_;

@@ -12,7 +12,7 @@
 
 namespace spherical_springs {
 
-/// A text for the log and for answers.
+/// Says what went wrong, in words for the log and for answers.
 inline const char* reasonOf(const std::exception& fault) {
   if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr) {
     return "there is not enough memory for this";

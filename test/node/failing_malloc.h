@@ -42,9 +42,16 @@ inline bool fails() {
 }  // namespace spherical_springs::testing
 
 extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 extern "C" void* malloc(std::size_t size) {
   if (!spherical_springs::testing::fails()) return __libc_malloc(size);
+  errno = ENOMEM;
+  return nullptr;
+}
+
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  if (!spherical_springs::testing::fails()) return __libc_memalign(alignment, size);
   errno = ENOMEM;
   return nullptr;
 }
