@@ -7,7 +7,8 @@
 
 namespace spherical_springs::core {
 
-/// Those of bucket b are at [first[b], first[b + 1]), in the order in which they came.
+/// Items of bucket b are at [first[b], first[b + 1]), in the order in which they came: fewer than
+/// 2^32 in all, to which SceneLimits bounds what comes of a scene.
 template <class Item>
 struct Buckets {
   std::vector<std::uint32_t> first;

@@ -1,8 +1,25 @@
 #include "spherical_springs/scene.h"
 
+#include <cstdint>
+#include <limits>
+
 #include "scene_checks.h"
 
 namespace spherical_springs::core {
+namespace {
+
+// Indices of 32 bits number the longest lists that are made of a scene; one of them means none. The
+// blocks of the Hessian are one a particle and one for each ordered pair of ends of a spring. The
+// rows of stepping are the particles, filled up to a multiple of 8 in patches of a thousand, and in
+// each patch the ends in others of the springs that it shares with them.
+constexpr std::uint64_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMostParticles = SceneLimits::kMostParticles;
+constexpr std::uint64_t kMostPairs = 6 * std::uint64_t{SceneLimits::kMostSprings};
+static_assert(kMostParticles + kMostParticles / 64 + kMostPairs < kMostIndices);
+// Rows of a patch are named by where they begin, four numbers each.
+static_assert(4 * (kMostParticles + 8) < kMostIndices);
+
+}  // namespace
 
 std::size_t Scene::springCount() const {
   std::size_t count = 0;
@@ -141,7 +158,7 @@ void Scene::clear() {
 
 Scene::Scene(SceneLimits limits, const Ids& particle_ids, std::vector<Particle> particles,
              const SpringIds& spring_ids, SpringLists springs)
-    : limits_(limits) {
+    : limits_(limits.heldByIndices()) {
   requireRoom("particles", particles_.size(), particles.size(), limits_.particles);
   requireRisingIds(particles_, particle_ids, "particles");
   std::size_t added = 0;

@@ -1,6 +1,7 @@
 // The scene as a person describes it. Everything is checked here, at the door, and nowhere after.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -29,8 +30,16 @@ struct Particle {
 };
 
 struct SceneLimits {
+  /// As many as indices of 32 bits can tell apart; limits above count as these.
+  static constexpr std::size_t kMostParticles = 400'000'000, kMostSprings = 600'000'000;
+
   std::size_t particles = 20'000'000;
   std::size_t springs = 100'000'000;
+
+  /// These limits where indices hold so many, and else as many as they hold.
+  SceneLimits heldByIndices() const {
+    return {std::min(particles, kMostParticles), std::min(springs, kMostSprings)};
+  }
 };
 
 /// Particles and springs under their ids. Each changing function checks the whole request first and
@@ -39,7 +48,7 @@ struct SceneLimits {
 /// they were last added or set.
 class Scene {
  public:
-  explicit Scene(SceneLimits limits = {}) : limits_(limits) {}
+  explicit Scene(SceneLimits limits = {}) : limits_(limits.heldByIndices()) {}
 
   /// A whole scene under ids of the caller's choice, each list rising. Springs that ask for it take
   /// their rest values from the particles' positions.

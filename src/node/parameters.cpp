@@ -70,7 +70,6 @@ void read(const ros::NodeHandle& node, const std::string& name, std::string& val
 }  // namespace
 
 Parameters Parameters::from(const ros::NodeHandle& node) {
-  constexpr int kMostItems = 2'000'000'000;
   const auto anyText = [](const std::string&) { return true; };
   const auto someText = [](const std::string& text) { return !text.empty(); };
   Parameters p;
@@ -84,8 +83,9 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
   read(node, "scene", p.scene, "the path of a file", anyText);
   read(node, "threads", p.threads, 0, 256);
   read(node, "spring_damping", p.spring_damping, {"relative", "own"});
-  read(node, "max_particles", p.max_particles, 0, kMostItems);
-  read(node, "max_springs", p.max_springs, 0, kMostItems);
+  read(node, "max_particles", p.max_particles, 0,
+       static_cast<int>(core::SceneLimits::kMostParticles));
+  read(node, "max_springs", p.max_springs, 0, static_cast<int>(core::SceneLimits::kMostSprings));
   read(node, "scene_directory", p.scene_directory, "the path of a directory", someText);
   return p;
 }

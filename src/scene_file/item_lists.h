@@ -50,7 +50,7 @@ void ItemList<Item>::take(Fields& fields, std::size_t end) {
 /// All lists of a scene file.
 class ItemLists {
  public:
-  explicit ItemLists(const SceneLimits& limits) : limits_(limits) {}
+  explicit ItemLists(const SceneLimits& limits) : limits_(limits.heldByIndices()) {}
 
   static bool isList(const std::string& name) {
     bool known = name == kParticles;

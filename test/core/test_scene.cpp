@@ -72,6 +72,15 @@ TEST(SceneIds, ThatAreUsedUpAreRefusedWithTheReason) {
             0u);
 }
 
+TEST(SceneLimitsOfIndices, BoundAllOthers) {
+  const SceneLimits held = SceneLimits{2'000'000'000, 2'000'000'000}.heldByIndices();
+  EXPECT_EQ(held.particles, SceneLimits::kMostParticles);
+  EXPECT_EQ(held.springs, SceneLimits::kMostSprings);
+  const SceneLimits small = SceneLimits{7, 8}.heldByIndices();
+  EXPECT_EQ(small.particles, 7);
+  EXPECT_EQ(small.springs, 8);
+}
+
 TEST(SceneParticles, ComeNormalised) {
   Particle particle = testing::particleAt({0, 0, 3e200});
   particle.angular_velocity = {1, 2, 3};

@@ -20,8 +20,8 @@ WRONG = {
     'scene': ('7', 'true', '/no/such/scene.json', '/'),
     'threads': ('-1', '1000000', 'nan', '1.5', *NOT_A_NUMBER),
     'spring_damping': ('absolute', '1', 'false'),
-    'max_particles': ('-1', '1e+300', 'nan', '2.5', *NOT_A_NUMBER),
-    'max_springs': ('-7', '1e+300', 'nan', '2.5', *NOT_A_NUMBER),
+    'max_particles': ('-1', '400000001', '1e+300', 'nan', '2.5', *NOT_A_NUMBER),
+    'max_springs': ('-7', '600000001', '2000000000', '1e+300', 'nan', '2.5', *NOT_A_NUMBER),
     'scene_directory': ('3', 'true', ''),
 }
 
