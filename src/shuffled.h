@@ -1,10 +1,10 @@
-// Numbers of two vectors in another order, by whichever compiler. Local to each file, as
-// kernels/lanes.h has it.
+// Numbers of two vectors in another order, by whichever compiler.
 #pragma once
 
-namespace {
+namespace spherical_springs::core {
 
-/// `order`: numbers of a count from 0, those of b go on.
+/// `order`: numbers of a count from 0, those of b go on. Always inlined, so that files compiled for
+/// different instruction sets have no function of this name that one could call of another.
 template <int... order, class Vector>
 [[gnu::always_inline]] inline Vector shuffled(const Vector& a, const Vector& b) {
 #ifdef __clang__
@@ -15,4 +15,4 @@ template <int... order, class Vector>
 #endif
 }
 
-}  // namespace
+}  // namespace spherical_springs::core

@@ -11,7 +11,7 @@ namespace spherical_springs::core {
 
 /// The largest id that an item may have, and the largest that a file may choose for one: what is
 /// added later gets the ids above.
-constexpr std::uint32_t kLargestId = 4294967294, kLargestChosenId = 4000000000;
+inline constexpr std::uint32_t kLargestId = 4294967294, kLargestChosenId = 4000000000;
 
 /// Items under ids that are given in order from 0 and never used again.
 template <class Item>

@@ -23,10 +23,10 @@ struct Range {
 };
 
 /// Magnitudes far beyond any scene and far within what products of a few of them can hold.
-constexpr double kSmallest = 1e-30, kLargest = 1e30;
+inline constexpr double kSmallest = 1e-30, kLargest = 1e30;
 
 /// No angular velocity [rad/s] that such magnitudes can bring about is above this.
-constexpr double kFastest = 1e100;
+inline constexpr double kFastest = 1e100;
 
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
 std::string toText(double value);

@@ -11,7 +11,7 @@ namespace spherical_springs::core {
 using Vector3 = Eigen::Vector3d;
 using Points = Eigen::Matrix3Xd;  ///< one column a particle
 
-constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kPi = 3.14159265358979323846;
 
 /// Direction of any finite non-zero vector, whatever its magnitude. A vector that already has unit
 /// length to rounding comes back unchanged, so that a saved position is read back to the last bit.

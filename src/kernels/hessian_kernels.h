@@ -12,7 +12,8 @@ struct FieldOf {
   const void* first;
   std::size_t stride;  ///< [bytes]
 
-  const Value& operator[](std::size_t i) const {
+  /// Always inlined, as this header is compiled for several instruction sets.
+  [[gnu::always_inline]] inline const Value& operator[](std::size_t i) const {
     return *reinterpret_cast<const Value*>(static_cast<const char*>(first) + i * stride);
   }
 };

@@ -2,8 +2,6 @@
 // is compiled for. The formulas are those of src/springs, for angles that are not large.
 #pragma once
 
-#include <algorithm>
-
 #include "hessian_kernels.h"
 #include "lanes.h"
 
@@ -222,6 +220,7 @@ inline void fetchAhead(const SpringFields<N>& springs, std::uint32_t begin, std:
                        const HessianArrays& arrays) {
   for (std::uint32_t s = begin; s < end; ++s) {
     for (const std::uint32_t place : springs.places[s]) {
+      if (place == HessianArrays::kNotStored) continue;
       __builtin_prefetch(arrays.hessian + 4 * std::size_t{place}, 1);
     }
   }
@@ -234,7 +233,8 @@ double addAll(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t
   Lanes energy = {};
   left_out_count = 0;
   for (; begin + kLanes <= end; begin += kLanes) {
-    fetchAhead(springs, begin + kLanes, std::min(end, begin + 2 * kLanes), arrays);
+    const std::uint32_t next = begin + kLanes;
+    fetchAhead(springs, next, next + kLanes < end ? next + kLanes : end, arrays);
     if (!AddLanes(springs, begin, arrays, energy)) {
       leaveOut(begin, begin + kLanes, left_out, left_out_count);
     }

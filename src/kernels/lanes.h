@@ -15,6 +15,8 @@
 
 namespace {
 
+using spherical_springs::core::shuffled;
+
 #ifdef __AVX512F__
 constexpr int kLanes = 8;
 #else

@@ -6,8 +6,8 @@
 
 namespace spherical_springs::core {
 
-constexpr std::size_t kGroup = 8;      ///< so many springs or particles lie side by side
-constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
+inline constexpr std::size_t kGroup = 8;      ///< so many springs or particles lie side by side
+inline constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
 
 struct alignas(kRowLength * sizeof(double)) Row {
   double values[kRowLength];

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Brings a group nearer, if there is one; what is beyond the last does no harm.
+/// Asks the memory for a group.
 template <class Group>
 [[gnu::always_inline]] inline void fetch(const Group* group) {
   constexpr std::size_t kLine = 64;
@@ -23,7 +23,7 @@ std::uint32_t addAll(const typename Short::Group* groups, std::uint32_t group_co
   Short short_ones(positions, forces);
   std::uint32_t hard_count = 0;
   for (std::uint32_t g = 0; g < group_count; ++g) {
-    fetch(groups + g + kAhead);
+    if (group_count - g > kAhead) fetch(groups + g + kAhead);
     for (std::uint32_t first = 0; first < kGroup; first += kLanes) {
       const Batch<typename Short::Group> batch = {groups + g, first};
       if (short_ones.add(batch)) continue;

@@ -2,6 +2,6 @@
 
 namespace spherical_springs::core {
 
-constexpr const char* kSceneFormat = "spherical_springs scene 1";
+inline constexpr const char* kSceneFormat = "spherical_springs scene 1";
 
 }  // namespace spherical_springs::core

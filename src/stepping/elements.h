@@ -9,7 +9,7 @@
 
 namespace spherical_springs::core {
 
-constexpr std::uint32_t kNone = ~0u;
+inline constexpr std::uint32_t kNone = ~0u;
 
 /// What a kernel computes at once: an arc, a triangle with up to two arcs along its edges, or an
 /// oriented arc.
