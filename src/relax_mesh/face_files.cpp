@@ -9,11 +9,13 @@
 
 namespace spherical_springs::mesh {
 
-Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces) {
+Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces,
+                              const core::Checkpoint& checkpoint) {
   const core::Range allowed{0, std::numeric_limits<double>::max(), "a positive number", true};
   Eigen::VectorXd densities(faces);
   Eigen::Index count = 0;
   for (std::string text; in >> text; ++count) {
+    checkpoint();
     char* end;
     const double density = std::strtod(text.c_str(), &end);
     if (*end != '\0' || !allowed.contains(density)) {
@@ -29,11 +31,13 @@ Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces) {
   return densities;
 }
 
-void writeMetrics(std::ostream& out, const Eigen::VectorXd& shares, const FaceDistortion& faces) {
+void writeMetrics(std::ostream& out, const Eigen::VectorXd& shares, const FaceDistortion& faces,
+                  const core::Checkpoint& checkpoint) {
   out << "face,share_sr,area_sr,log_area_ratio,angle_change_1_rad,angle_change_2_rad,"
          "angle_change_3_rad\n"
       << std::setprecision(std::numeric_limits<double>::max_digits10);
   for (Eigen::Index f = 0; f < shares.size(); ++f) {
+    checkpoint();
     out << f << ',' << shares[f] << ',' << faces.areas[f] << ',' << faces.log_area_ratios[f];
     for (int k = 0; k < 3; ++k) out << ',' << faces.angle_changes(k, f);
     out << '\n';

@@ -83,15 +83,16 @@ Matrix columns(const std::vector<Column>& list) {
   return result;
 }
 
-void writeVertices(std::ostream& out, const Points& vertices) {
+void writeVertices(std::ostream& out, const Points& vertices, const core::Checkpoint& checkpoint) {
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+    checkpoint();
     out << "v " << vertices(0, i) << ' ' << vertices(1, i) << ' ' << vertices(2, i) << '\n';
   }
 }
 
 }  // namespace
 
-TriangleMesh readObj(std::istream& in) {
+TriangleMesh readObj(std::istream& in, const core::Checkpoint& checkpoint) {
   std::vector<Vector3> vertices;
   std::vector<Eigen::Vector3i> faces;
   std::size_t last_line = 0, line_of_highest = 0;
@@ -99,6 +100,7 @@ TriangleMesh readObj(std::istream& in) {
   std::string line;
   const char* rest;
   while (std::getline(in, line)) {
+    checkpoint();
     ++last_line;
     if (begins(line, 'v', rest)) {
       vertices.push_back(parseVertex(last_line, rest));
@@ -119,31 +121,35 @@ TriangleMesh readObj(std::istream& in) {
   return {columns<Points>(vertices), columns<Faces>(faces)};
 }
 
-TriangleMesh readObj(const std::filesystem::path& path) {
+TriangleMesh readObj(const std::filesystem::path& path, const core::Checkpoint& checkpoint) {
   std::ifstream in = core::openToRead(path);
   try {
-    return readObj(in);
+    return readObj(in, checkpoint);
   } catch (const std::invalid_argument& fault) {
     throw std::invalid_argument(core::onOneLine(path) + ": " + fault.what());
   }
 }
 
-void writeObj(std::ostream& out, const TriangleMesh& mesh) {
+void writeObj(std::ostream& out, const TriangleMesh& mesh, const core::Checkpoint& checkpoint) {
   out << std::setprecision(std::numeric_limits<double>::max_digits10);
-  writeVertices(out, mesh.vertices);
+  writeVertices(out, mesh.vertices, checkpoint);
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
+    checkpoint();
     const Eigen::Vector3i face = mesh.faces.col(f).array() + 1;
     out << "f " << face[0] << ' ' << face[1] << ' ' << face[2] << '\n';
   }
 }
 
-void writeObj(std::ostream& out, const TriangleMesh& mesh, const TextureCoordinates& texture) {
+void writeObj(std::ostream& out, const TriangleMesh& mesh, const TextureCoordinates& texture,
+              const core::Checkpoint& checkpoint) {
   out << std::setprecision(std::numeric_limits<double>::max_digits10);
-  writeVertices(out, mesh.vertices);
+  writeVertices(out, mesh.vertices, checkpoint);
   for (Eigen::Index i = 0; i < texture.places.cols(); ++i) {
+    checkpoint();
     out << "vt " << texture.places(0, i) << ' ' << texture.places(1, i) << '\n';
   }
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
+    checkpoint();
     out << 'f';
     for (int i = 0; i < kCorners; ++i) {
       out << ' ' << mesh.faces(i, f) + 1 << '/' << texture.corners(i, f) + 1;

@@ -5,27 +5,31 @@
 #include <istream>
 #include <ostream>
 
+#include "../checkpoint.h"
 #include "spherical_springs/mesh/triangle_mesh.h"
 #include "texture_coordinates.h"
 
 namespace spherical_springs::mesh {
 
-/// Lines `v x y z` and `f a b c`, with corners as `1`, `1/2`, `1//3`, `1/2/3` or counted back from
-/// the last vertex as `-1`. What else a vertex or a corner says, and every other line, is passed
-/// over.
+/// Reads lines `v x y z` and `f a b c`, with corners as `1`, `1/2`, `1//3`, `1/2/3` or counted back
+/// from the last vertex as `-1`. What else a vertex or a corner says, and every other line, is
+/// passed over.
 /// @throw std::invalid_argument, which names the line and what is allowed, for a vertex that is not
 /// three finite numbers, a face that is not three vertices of the file, or a text that has no
 /// vertices or no faces.
-TriangleMesh readObj(std::istream& in);
+TriangleMesh readObj(std::istream& in, const core::Checkpoint& checkpoint = core::passAll);
 
 /// @throw also std::runtime_error for a file that cannot be read; the file's name stands before
 /// every reason.
-TriangleMesh readObj(const std::filesystem::path& path);
+TriangleMesh readObj(const std::filesystem::path& path,
+                     const core::Checkpoint& checkpoint = core::passAll);
 
-/// With as many digits as give back every number to the last bit.
-void writeObj(std::ostream& out, const TriangleMesh& mesh);
+/// Writes as many digits as give back every number to the last bit.
+void writeObj(std::ostream& out, const TriangleMesh& mesh,
+              const core::Checkpoint& checkpoint = core::passAll);
 
-/// The same with texture coordinates.
-void writeObj(std::ostream& out, const TriangleMesh& mesh, const TextureCoordinates& texture);
+/// Writes texture coordinates besides.
+void writeObj(std::ostream& out, const TriangleMesh& mesh, const TextureCoordinates& texture,
+              const core::Checkpoint& checkpoint = core::passAll);
 
 }  // namespace spherical_springs::mesh

@@ -29,6 +29,25 @@ std::string reasonAgainst(const std::string& text) {
 
 const std::string kCorners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
+/// Throws when it is passed more often than that.
+core::Checkpoint checkpointAfter(int times) {
+  return [times]() mutable {
+    if (--times < 0) throw std::domain_error("enough");
+  };
+}
+
+TEST(ObjFile, PassesACheckpointWithEachLine) {
+  std::istringstream in(kCorners + "f 1 2 3\n");
+  EXPECT_THROW(readObj(in, checkpointAfter(3)), std::domain_error);
+  const TriangleMesh sphere = mesh_scenes::icosphere(0);
+  std::ostringstream out;
+  EXPECT_NO_THROW(writeObj(out, sphere, checkpointAfter(12 + 20)));
+  EXPECT_THROW(writeObj(out, sphere, checkpointAfter(12 + 19)), std::domain_error);
+  const TextureCoordinates texture{Eigen::Matrix2Xd::Zero(2, 5), sphere.faces};
+  EXPECT_NO_THROW(writeObj(out, sphere, texture, checkpointAfter(12 + 5 + 20)));
+  EXPECT_THROW(writeObj(out, sphere, texture, checkpointAfter(12 + 5 + 19)), std::domain_error);
+}
+
 TEST(ObjFile, KeepsOrderAndEveryBit) {
   const TriangleMesh sphere = mesh_scenes::icosphere(2);
   std::stringstream file;
