@@ -1,15 +1,17 @@
 #include "interruption.h"
 
+#include <atomic>
 #include <csignal>
-#include <stdexcept>
 
 namespace spherical_springs::relax_mesh {
 namespace {
 
-volatile std::sig_atomic_t signals = 0;
+// Written by a signal handler and read by threads, which only lock-free atomics allow.
+std::atomic<bool> was_interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 void keep(int signal) {
-  signals = 1;
+  was_interrupted = true;
   std::signal(signal, SIG_DFL);
 }
 
@@ -20,10 +22,10 @@ void keepInterruptions() {
   std::signal(SIGTERM, keep);
 }
 
-bool interrupted() { return signals != 0; }
+bool interrupted() { return was_interrupted; }
 
 void throwIfInterrupted() {
-  if (interrupted()) throw std::runtime_error("interrupted; no file has been written");
+  if (interrupted()) throw Interrupted();
 }
 
 }  // namespace spherical_springs::relax_mesh

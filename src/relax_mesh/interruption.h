@@ -1,16 +1,22 @@
 // Ctrl-C, for a program that has to end what it has asked of others.
 #pragma once
 
+#include <stdexcept>
+
 namespace spherical_springs::relax_mesh {
 
-/// From here on SIGINT and SIGTERM are kept in mind, once: the next one ends the program as usual.
-/// To be called after `ros::init` with `NoSigintHandler`.
+struct Interrupted : std::runtime_error {
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+/// Keeps the first SIGINT and the first SIGTERM in mind from here on; a second one ends the program
+/// as usual. To be called after `ros::init` with `NoSigintHandler`.
 void keepInterruptions();
 
-/// Whether there has been one.
+/// Whether there has been a signal.
 bool interrupted();
 
-/// @throw std::runtime_error after one.
+/// @throw Interrupted after a signal.
 void throwIfInterrupted();
 
 }  // namespace spherical_springs::relax_mesh

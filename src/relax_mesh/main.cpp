@@ -5,20 +5,21 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <new>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "../available_threads.h"
 #include "../files.h"
-#include "face_files.h"
 #include "interruption.h"
-#include "obj_file.h"
+#include "output_files.h"
 #include "progress_line.h"
 #include "spherical_springs/mesh/distortion.h"
 #include "spherical_springs/mesh/sphere_map.h"
 #include "spherical_springs/range.h"
 #include "springs_node.h"
 #include "task.h"
-#include "texture_coordinates.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
@@ -28,6 +29,8 @@ using mesh::FaceDistortion;
 
 /// Of angle springs beside solid-angle springs: these alone leave some freedom.
 constexpr double kWeakest = 1e-5;
+
+constexpr const char* kNoMemory = "there is not enough memory";
 
 /// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 80 for 50,000.
 struct Times {
@@ -97,57 +100,82 @@ bool isBetter(const mesh::Distortion& relaxed, const mesh::Distortion& before) {
   return coversOnce(relaxed) && relaxed.spread < before.spread;
 }
 
-void write(const Options& options, const Task& task, const Points& map,
-           const FaceDistortion& faces) {
-  core::replaceFile(options.output, [&](std::ostream& out) {
-    mesh::writeObj(out, {map, task.surface.faces});
-  });
-  if (!options.uv.empty()) {
-    core::replaceFile(options.uv, [&](std::ostream& out) {
-      writeObj(out, task.surface, mesh::longitudeLatitude(map, task.surface.faces));
-    });
+void warn(const std::string& text) {
+  std::cerr << "warning: " << core::onOneLine(text) << std::endl;
+}
+
+/// What springs make of a map that has been written, or nothing, with a warning that says why.
+std::optional<Points> relaxed(SpringsNode& node, const Network& network, double max_time) {
+  const std::string consequence = "; the map has been written, but springs have not relaxed it";
+  try {
+    return node.relax(network, max_time);
+  } catch (const Interrupted& fault) {
+    throw std::runtime_error(fault.what() + consequence);
+  } catch (const std::bad_alloc&) {
+    warn(kNoMemory + consequence);
+  } catch (const std::exception& fault) {
+    warn(fault.what() + consequence);
   }
-  if (!options.metrics.empty()) {
-    core::replaceFile(options.metrics,
-                      [&](std::ostream& out) { writeMetrics(out, task.shares, faces); });
+  return {};
+}
+
+void warnOfTask(const Task& task, const Options& options) {
+  if (!task.inside_out) return;
+  warn(
+      "the faces of " + options.mesh.string() +
+      " look inwards: seen from outside they turn clockwise, and the map shows them mirrored; with "
+      "two corners of each face swapped it does not");
+}
+
+void printStart(const FaceDistortion& start) {
+  print("before", start, 0);
+  if (coversOnce(summary(start))) return;
+  std::cout << "the start does not cover the sphere once without folds: passed over" << std::endl;
+}
+
+/// Writes a map in the place of the one before.
+void rewriteFiles(const Options& options, const Task& task, const Points& map,
+                  const FaceDistortion& faces) {
+  try {
+    writeFiles(options, task, map, faces);
+  } catch (const std::exception& fault) {
+    throw std::runtime_error(fault.what() + std::string("; all others hold the map before springs "
+                                                        "have relaxed it"));
   }
 }
 
+/// Asks what may fail beside the map before that is computed, and writes the map before what may
+/// fail after that.
 void run(const Options& options) {
   const Task task = readTask(options);
+  const mesh::Faces& triangles = task.surface.faces;
+  const Times times(task.surface.vertices.cols());
   const auto distortionOf = [&](const Points& map) {
     return faceDistortion(task.surface, task.shares, map);
   };
-  if (task.inside_out) {
-    std::cerr << "warning: the faces of " << core::onOneLine(options.mesh)
-              << " look inwards: seen from outside they turn clockwise, and the map shows them "
-                 "mirrored; with two corners of each face swapped it does not"
-              << std::endl;
-  }
+  warnOfTask(task, options);
   SpringsNode node(options.node);
-  const auto begin = ros::WallTime::now();
-  if (task.start) {
-    const FaceDistortion start = distortionOf(*task.start);
-    print("before", start, 0);
-    if (!coversOnce(summary(start))) {
-      std::cout << "the start does not cover the sphere once without folds: passed over"
-                << std::endl;
-    }
+  node.requireRoomFor(task.surface.vertices.cols(), springCount(triangles.cols()));
+  if (node.wasBusy()) {
+    warn(node.name() + " relaxes for another client; it will be asked again when there is a map");
   }
-  Points map = mapOf(task, options);
+  const auto begin = ros::WallTime::now();
+  if (task.start) printStart(distortionOf(*task.start));
+  const Points map = mapOf(task, options);
   FaceDistortion faces = distortionOf(map);
+  if (!coversOnce(summary(faces))) refuseWithoutMap(options.mesh);
+  writeFiles(options, task, map, faces);
   if (!task.start) print("before", faces, secondsSince(begin));
 
-  const Points relaxed =
-      node.relax({map, task.surface.faces, task.shares, kWeakest + options.angle_weight},
-                 Times(task.surface.vertices.cols()).relaxation);
-  const FaceDistortion after = distortionOf(relaxed);
-  if (isBetter(summary(after), summary(faces)) && edgesBelowPi(task.surface.faces, relaxed)) {
-    map = relaxed;
-    faces = after;
+  const Network network{map, triangles, task.shares, kWeakest + options.angle_weight};
+  const auto better = relaxed(node, network, times.relaxation);
+  if (better && edgesBelowPi(triangles, *better)) {
+    const FaceDistortion after = distortionOf(*better);
+    if (isBetter(summary(after), summary(faces))) {
+      rewriteFiles(options, task, *better, after);
+      faces = after;
+    }
   }
-  if (!coversOnce(summary(faces))) refuseWithoutMap(options.mesh);
-  write(options, task, map, faces);
   print("after", faces, secondsSince(begin));
 }
 
@@ -162,6 +190,12 @@ int main(int argc, char** argv) {
     keepInterruptions();
     const auto options = parseOptions({argv + 1, argv + argc});
     if (options) run(*options);
+  } catch (const Interrupted& fault) {
+    std::cerr << "error: " << fault.what() << "; no file has been written" << std::endl;
+    return 1;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "error: " << kNoMemory << std::endl;
+    return 1;
   } catch (const std::exception& fault) {
     // ROS shows names that it does not take as they are.
     std::cerr << "error: " << spherical_springs::core::onOneLine(fault.what()) << std::endl;

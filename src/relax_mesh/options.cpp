@@ -33,8 +33,8 @@ po::options_description described(Options& options) {
   };
   po::options_description all(
       "relax_mesh: maps a closed surface to the sphere, every face to its share of the area.\n"
-      "The node at work is left paused, with the map in place of the scene that it "
-      "had.\n\nOptions");
+      "The node at work is left paused, with the map in place of the scene that it had. Where "
+      "the node fails meanwhile, the map is written without its part, with a warning.\n\nOptions");
   auto add = all.add_options();
   add("help", "show this");
   add("mesh", path(options.mesh)->required(),

@@ -1,101 +1,42 @@
 #include "springs_node.h"
 
+#include <ros/callback_queue.h>
 #include <ros/master.h>
+#include <ros/param.h>
 #include <ros/service.h>
 #include <ros/spinner.h>
-#include <spherical_springs/AddParticles.h>
-#include <spherical_springs/AddSprings.h>
 #include <spherical_springs/GetScene.h>
 #include <spherical_springs/Relax.h>
+#include <spherical_springs/RemoveParticles.h>
 #include <spherical_springs/Status.h>
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 
-#include <atomic>
-#include <cmath>
+#include <algorithm>
 #include <iostream>
-#include <stdexcept>
-#include <thread>
+#include <iterator>
 
 #include "interruption.h"
 #include "progress_line.h"
+#include "service_call.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
 
-constexpr double kPatience = 10;     // for a node that is about to start [s]
+constexpr double kStart = 10;        // for a node that is about to start [s]
 constexpr double kPrecision = 1e-6;  // of the areas' shares
 
-AddParticles::Request particles(const Points& positions) {
-  AddParticles::Request request;
-  request.particles.resize(positions.cols());
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    auto& position = request.particles[i].position;
-    position.x = positions(0, i);
-    position.y = positions(1, i);
-    position.z = positions(2, i);
-  }
-  return request;
-}
+const ros::WallDuration kBetweenLooks(0.02);
 
-/// A spring that holds 1/2 J where its angle, or solid angle, is off by all of `rest`.
-double stiffnessAt(double rest) { return 1 / (rest * rest); }
-
-/// `ids`: of the vertices. Each edge of a closed surface rises in one of its two faces.
-AddSprings::Request springs(const Network& network, const std::vector<std::uint32_t>& ids) {
-  AddSprings::Request request;
-  for (Eigen::Index f = 0; f < network.faces.cols(); ++f) {
-    const auto face = network.faces.col(f);
-    SolidAngleSpring area;
-    area.particles = {ids[face[0]], ids[face[1]], ids[face[2]]};
-    area.rest_solid_angle = network.rests[f];
-    area.stiffness = stiffnessAt(area.rest_solid_angle);
-    request.solid_angle_springs.push_back(area);
-    for (int i = 0; i < 3; ++i) {
-      const auto from = face[i], to = face[(i + 1) % 3];
-      if (from > to) continue;
-      AngleSpring arc;
-      arc.particles = {ids[from], ids[to]};
-      arc.rest_angle = core::arc(network.start.col(from), network.start.col(to)).angle;
-      arc.stiffness = network.arc_weight * stiffnessAt(arc.rest_angle);
-      request.angle_springs.push_back(arc);
-    }
-  }
-  return request;
-}
-
-/// [N m]; a face of the mean size that is off by this share turns its vertices so.
-double torqueOf(double share, const Network& network) {
-  return share * std::sqrt(network.faces.cols() / (4 * core::kPi));
-}
-
-Points positionsOf(const GetScene::Response& scene) {
-  Points result(3, scene.particles.size());
-  for (Eigen::Index i = 0; i < result.cols(); ++i) {
-    const auto& position = scene.particles[i].position;
-    result.col(i) << position.x, position.y, position.z;
-  }
-  return result;
-}
-
-/// As long as it lives, an interruption is passed on to the node, which is at work elsewhere.
-class CancelOnInterruption {
+/// For one look after another, until a time has gone by.
+class Deadline {
  public:
-  explicit CancelOnInterruption(const std::string& service)
-      : thread_([this, service] {
-          for (; !over_; ros::WallDuration(0.02).sleep()) {
-            std_srvs::Trigger cancel;
-            if (interrupted()) ros::service::call(service, cancel);
-          }
-        }) {}
-  ~CancelOnInterruption() {
-    over_ = true;
-    thread_.join();
-  }
+  explicit Deadline(double seconds) : end_(ros::WallTime::now() + ros::WallDuration(seconds)) {}
+  bool isOver() const { return ros::WallTime::now() > end_; }
 
  private:
-  std::atomic<bool> over_{false};
-  std::thread thread_;
+  ros::WallTime end_;
 };
 
 /// As long as it lives, what the node says of its relaxation is shown.
@@ -116,6 +57,20 @@ class ShowProgress {
   ros::AsyncSpinner spinner_{1};
 };
 
+/// "running", "paused" or "relaxing"; an empty text where the node says nothing for a second.
+std::string stateOf(const std::string& node) {
+  ros::CallbackQueue queue;
+  ros::NodeHandle handle;
+  handle.setCallbackQueue(&queue);
+  std::string state;
+  const ros::Subscriber status = handle.subscribe<Status>(
+      node + "/status", 1, [&](const Status::ConstPtr& message) { state = message->state; });
+  for (const Deadline deadline(1); state.empty() && !deadline.isOver();) {
+    queue.callAvailable(kBetweenLooks);
+  }
+  return state;
+}
+
 /// `name`: resolved.
 std::string howToStart(const std::string& name) {
   const auto slash = name.rfind('/');
@@ -125,63 +80,200 @@ std::string howToStart(const std::string& name) {
          name.substr(slash + 1);
 }
 
+/// `limit`: the parameter, which is set where it is not the node's default, above any mesh's need.
+void requireRoom(const std::string& node, const std::string& limit, const std::string& items,
+                 std::size_t present, std::size_t further) {
+  int most;
+  if (!ros::param::get(node + "/" + limit, most)) return;
+  if (present + further <= static_cast<std::size_t>(most)) return;
+  const std::string has =
+      present > 0 ? " and has " + std::to_string(present) + " until the map replaces them" : "";
+  const std::string remedy = present > 0 ? ", or clear its scene" : "";
+  throw std::runtime_error(node + " takes " + std::to_string(most) + " " + items + has +
+                           "; the map needs " + std::to_string(further) +
+                           "; start the node with a larger ~" + limit + remedy);
+}
+
+/// What is in one rising list and not in another.
+Ids without(const Ids& all, const Ids& some) {
+  Ids rest;
+  std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
+  return rest;
+}
+
 }  // namespace
 
 SpringsNode::SpringsNode(const std::string& name) : name_(ros::names::resolve(name)) {
-  const std::string remedy = howToStart(name_);
   // Without a master every other call of ROS would wait for one, for ever.
   if (!ros::master::check()) {
-    throw std::runtime_error("no ROS master answers at " + ros::master::getURI() + remedy);
+    throw std::runtime_error("no ROS master answers at " + ros::master::getURI() +
+                             howToStart(name_));
   }
   ros::start();
-  const auto deadline = ros::WallTime::now() + ros::WallDuration(kPatience);
+  waitUntilThere();
+  look();
+}
+
+void SpringsNode::waitUntilThere() const {
+  const Deadline deadline(kStart);
   while (!ros::service::exists(name_ + "/relax", false)) {
     throwIfInterrupted();
-    if (ros::WallTime::now() > deadline) {
-      throw std::runtime_error("no node " + name_ + " answers" + remedy);
+    if (!ros::ok()) throw std::runtime_error("ROS has been shut down");
+    if (deadline.isOver()) {
+      throw std::runtime_error("no node " + name_ + " answers" + howToStart(name_));
     }
-    ros::WallDuration(0.02).sleep();
+    kBetweenLooks.sleep();
   }
 }
 
 template <class Service>
 typename Service::Response SpringsNode::call(const char* service,
-                                             const typename Service::Request& request) {
-  typename Service::Response response;
-  const std::string full_name = name_ + "/" + service;
-  auto to_send = request;
-  if (!ros::service::call(full_name, to_send, response)) {
-    throwIfInterrupted();
-    throw std::runtime_error(full_name + " does not answer");
-  }
-  if (!response.success) throw std::runtime_error(full_name + ": " + response.message);
-  return response;
+                                             const typename Service::Request& request) const {
+  Patience patience;
+  patience.seconds = patience_;
+  return callService<Service>(name_ + "/" + service, request, patience);
+}
+
+void SpringsNode::look() {
+  constexpr bool kPersistent = true;
+  link_ = ros::NodeHandle().serviceClient<GetScene>(name_ + "/get_scene", kPersistent);
+  const auto scene = call<GetScene>("get_scene");
+  known_ = scene.particle_ids;
+  known_springs_ = scene.angle_spring_ids.size() + scene.solid_angle_spring_ids.size() +
+                   scene.oriented_angle_spring_ids.size();
+  const std::string state = stateOf(name_);
+  was_running_ = state == "running";
+  was_busy_ = state == "relaxing";
+}
+
+void SpringsNode::requireRoomFor(std::size_t particles, std::size_t springs) const {
+  requireRoom(name_, "max_particles", "particles", known_.size(), particles);
+  requireRoom(name_, "max_springs", "springs", known_springs_, springs);
 }
 
 Points SpringsNode::relax(const Network& network, double max_time) {
-  std_srvs::SetBool::Request pause;
-  pause.data = false;
-  call<std_srvs::SetBool>("set_running", pause);
-  std::cout << name_ << ": " << call<std_srvs::Trigger>("clear").message << std::endl;
-  const auto ids = call<AddParticles>("add_particles", particles(network.start)).ids;
-  call<AddSprings>("add_springs", springs(network, ids));
+  constexpr double kPerFace = 1e-4;  // some 30 times what a node takes [s]
+  patience_ += kPerFace * static_cast<double>(network.faces.cols());
+  for (bool again = false;; again = true) {
+    try {
+      waitUntilThere();
+      if (!link_.isValid()) look();
+      return relaxOnce(network, max_time);
+    } catch (const NoAnswer&) {
+      throwIfInterrupted();
+      if (again || link_.isValid()) throw;
+    }
+  }
+}
+
+Points SpringsNode::relaxOnce(const Network& network, double max_time) {
+  const Ids own = replaceScene(network);
   Relax::Request request;
   request.keep_orientation = true;
   request.max_time = max_time;
   request.tolerance = torqueOf(kPrecision, network);
+  Patience patience;
+  patience.seconds = patience_ + max_time;
+  patience.on_interruption = [&] {
+    try {
+      call<std_srvs::Trigger>("cancel");
+    } catch (const std::exception&) {  // the relaxation may have ended
+    }
+  };
   const auto relaxed = [&] {
     const ShowProgress progress(name_ + "/status");
-    const CancelOnInterruption cancel(name_ + "/cancel");
-    return call<Relax>("relax", request);
+    return callService<Relax>(name_ + "/relax", request, patience);
   }();
   throwIfInterrupted();
   std::cout << name_ << ": " << relaxed.message << std::endl;
+  return positionsOf(own);
+}
+
+Points SpringsNode::positionsOf(const Ids& own) const {
   const auto scene = call<GetScene>("get_scene");
-  if (scene.particle_ids != ids) {
-    throw std::runtime_error("another client has changed the scene of " + name_ +
-                             " meanwhile; relax_mesh needs a node to itself");
+  if (!without(own, scene.particle_ids).empty()) throw OtherClient(name_);
+  Points result(3, static_cast<Eigen::Index>(own.size()));
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < own.size(); ++i, ++place) {
+    while (scene.particle_ids[place] != own[i]) ++place;
+    const auto& position = scene.particles[place].position;
+    result.col(static_cast<Eigen::Index>(i)) << position.x, position.y, position.z;
   }
-  return positionsOf(scene);
+  return result;
+}
+
+/// Puts the network beside the scene that is there, and only then takes that away.
+/// @return the ids of its particles.
+Ids SpringsNode::replaceScene(const Network& network) {
+  if (!without(sceneIds(), known_).empty()) throw OtherClient(name_);
+  setRunning(false);
+  Ids own;
+  try {
+    own = call<AddParticles>("add_particles", particlesOf(network)).ids;
+    throwIfInterrupted();
+    call<AddSprings>("add_springs", springsOf(network, own));
+    throwIfInterrupted();
+    removeOthers(own);
+  } catch (const OtherClient&) {
+    withdraw(own);
+    throw;
+  } catch (...) {
+    withdraw(own);
+    if (was_running_) setRunning(true);
+    throw;
+  }
+  throwIfInterrupted();
+  return own;
+}
+
+/// Of two clients who add to the scene at once, the one who was first has the lower ids, and waits
+/// until the other has withdrawn.
+void SpringsNode::removeOthers(const Ids& own) const {
+  constexpr double kWithdrawal = 5;  // [s]
+  const Deadline deadline(kWithdrawal);
+  RemoveParticles::Request request;
+  for (;;) {
+    request.ids = without(sceneIds(), own);
+    const Ids foreign = without(request.ids, known_);
+    if (foreign.empty()) break;
+    if (foreign.front() < own.front() || deadline.isOver()) throw OtherClient(name_);
+    throwIfInterrupted();
+    kBetweenLooks.sleep();
+  }
+  if (request.ids.empty()) return;
+  std::cout << name_ << ": " << call<RemoveParticles>("remove_particles", request).message
+            << std::endl;
+}
+
+/// Takes the network off the scene again if it is not all that is left of it. While the other
+/// client's relaxation is under way the node refuses that.
+void SpringsNode::withdraw(const Ids& own) const {
+  constexpr double kLongest = 30;  // [s]
+  RemoveParticles::Request request;
+  request.ids = own;
+  for (const Deadline deadline(kLongest); !own.empty(); kBetweenLooks.sleep()) {
+    try {
+      if (!known_.empty() && without(sceneIds(), own).empty()) return;
+      call<RemoveParticles>("remove_particles", request);
+      return;
+    } catch (const NoAnswer&) {
+      return;
+    } catch (const std::exception& fault) {
+      if (!interrupted() && !deadline.isOver()) continue;
+      std::cerr << "warning: " << own.size()
+                << " particles of the map are left in the scene: " << core::onOneLine(fault.what())
+                << std::endl;
+      return;
+    }
+  }
+}
+
+Ids SpringsNode::sceneIds() const { return call<GetScene>("get_scene").particle_ids; }
+
+void SpringsNode::setRunning(bool running) const {
+  std_srvs::SetBool::Request request;
+  request.data = running;
+  call<std_srvs::SetBool>("set_running", request);
 }
 
 }  // namespace spherical_springs::relax_mesh

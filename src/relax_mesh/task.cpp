@@ -5,6 +5,7 @@
 
 #include "../files.h"
 #include "face_files.h"
+#include "interruption.h"
 #include "obj_file.h"
 #include "spherical_springs/mesh/sphere_map.h"
 #include "spherical_springs/mesh/topological_sphere.h"
@@ -15,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 mesh::TriangleMesh readSurface(const fs::path& path) {
-  mesh::TriangleMesh surface = mesh::readObj(path);
+  mesh::TriangleMesh surface = mesh::readObj(path, throwIfInterrupted);
   about(path, [&] { mesh::requireTopologicalSphere(surface); });
   return surface;
 }
@@ -26,7 +27,8 @@ Eigen::VectorXd readShares(const Options& options, const mesh::TriangleMesh& sur
   if (options.density.empty()) return shares;
   std::ifstream in = core::openToRead(options.density);
   return about(options.density, [&] {
-    return mesh::faceShares(areas.cwiseProduct(mesh::readDensities(in, areas.size())));
+    return mesh::faceShares(
+        areas.cwiseProduct(mesh::readDensities(in, areas.size(), throwIfInterrupted)));
   });
 }
 
@@ -43,7 +45,7 @@ Points directions(const Points& vertices) {
 }
 
 Points readStart(const fs::path& path, const mesh::Faces& faces) {
-  const mesh::TriangleMesh sphere = mesh::readObj(path);
+  const mesh::TriangleMesh sphere = mesh::readObj(path, throwIfInterrupted);
   return about(path, [&] {
     if (sphere.faces.cols() != faces.cols() || sphere.faces != faces) {
       throw std::invalid_argument("its faces are not those of the surface");

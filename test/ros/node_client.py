@@ -140,8 +140,8 @@ class NodeProcess:
 
     _numbers = itertools.count()
 
-    def __init__(self, environment=None, **parameters):
-        self.name = '/springs_%d' % next(self._numbers)
+    def __init__(self, environment=None, name=None, **parameters):
+        self.name = name or '/springs_%d' % next(self._numbers)
         program = roslib.packages.find_node(PACKAGE, PACKAGE + '_node')[0]
         command = [program, '__name:=' + self.name[1:]]
         command += ['_%s:=%s' % item for item in parameters.items()]

@@ -1,6 +1,7 @@
 """The command relax_mesh, and what it says and writes."""
 
 import re
+import resource
 import subprocess
 
 import roslib.packages
@@ -28,8 +29,13 @@ def command(**options):
         for text in ('--' + name.replace('_', '-'), str(value))]
 
 
-def relax_mesh(environment=None, **options):
-    """Run it to its end."""
+def relax_mesh(environment=None, longest_file=None, **options):
+    """Run it to its end. `longest_file`: in bytes, which it cannot write more of."""
+    def limit():
+        if longest_file is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (longest_file, longest_file))
+
+    # Python ignores the signal that a file which grows too long raises, and so does its child.
     return Outcome(subprocess.run(command(**options), stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True, timeout=4 * LONG,
-                                  env=environment))
+                                  env=environment, preexec_fn=limit, restore_signals=False))

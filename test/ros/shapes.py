@@ -11,6 +11,9 @@ from node_client import PACKAGE
 sys.path.append(os.path.join(rospkg.RosPack().get_path(PACKAGE), 'scripts', 'demo_parts'))
 import mesh  # noqa: E402
 
+# No map of it has all areas right, so that one is sought for all the time that there is.
+SLOW = (np.array([(3, 0, 0), (0, 2, 0), (0, 0, 4), (50, 50, 50)], float),
+        np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]))
 TETRAHEDRON = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])
 
 
@@ -26,6 +29,17 @@ def star(levels=4, arms=5, length=3):
     towards = np.stack([np.cos(turn), np.sin(turn), np.zeros(arms)], axis=1)
     radius = 1 + length * np.exp(12 * (directions @ towards.T - 1)).sum(axis=1)
     return directions * radius[:, None], faces
+
+
+def double_pyramid(count):
+    """Two vertices of so many faces."""
+    turn = 2 * np.pi * np.arange(count) / count
+    rim = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    here = np.arange(2, count + 2)
+    following = np.roll(here, -1)
+    faces = [np.stack([0 * here, here, following], axis=1),
+             np.stack([0 * here + 1, following, here], axis=1)]
+    return np.concatenate([[(0, 0, 1), (0, 0, -1)], rim]), np.concatenate(faces)
 
 
 def torus(count=6):

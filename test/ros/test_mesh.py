@@ -150,6 +150,23 @@ class TestShapes(MeshTest):
         self.assertLessEqual(np.count_nonzero(across), 2)  # with a pole inside
 
 
+class TestFiles(MeshTest):
+    """Of which one is longer than the system allows."""
+
+    def test_those_that_can_be_written_are(self):
+        vertices, faces = bumpy(2)
+        files = {name: self.path(name) for name in ('output', 'uv', 'metrics')}
+        surface = self.write('surface.obj', vertices, faces)
+        most = 2 * os.path.getsize(surface)  # less than of metrics
+        outcome = relax_mesh(mesh=surface, longest_file=most, **files)
+        self.assertEqual(
+            (1, 'error: cannot write %s: File too large; written: %s, %s'
+             % (files['metrics'], files['output'], files['uv'])), (outcome.code, outcome.error))
+        self.assertEqual({'surface.obj', 'output', 'uv'}, set(os.listdir(self.directory)))
+        _, same_faces = mesh.read_obj(files['output'])
+        np.testing.assert_array_equal(faces, same_faces)
+
+
 class TestRefusals(MeshTest):
     def refusal(self, **options):
         """The reason; nothing has been written, and the node's scene is as it was."""

@@ -1,0 +1,74 @@
+#include "output_files.h"
+
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+
+#include "../files.h"
+#include "face_files.h"
+#include "interruption.h"
+#include "obj_file.h"
+#include "texture_coordinates.h"
+
+namespace spherical_springs::relax_mesh {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Adds to a list in words.
+void add(std::string& list, const std::string& item, const char* separator) {
+  list += (list.empty() ? "" : separator) + item;
+}
+
+/// What has been written of several files, and why others have not.
+class Writing {
+ public:
+  /// `path`: may be empty, for no file.
+  void write(const fs::path& path, const std::function<void(std::ostream&)>& content) {
+    if (path.empty()) return;
+    try {
+      throwIfInterrupted();
+      core::replaceFile(path, content);
+      add(written_, core::onOneLine(path), ", ");
+    } catch (const Interrupted& fault) {
+      interrupted_ = fault.what();
+    } catch (const std::bad_alloc&) {
+      add(faults_, "not enough memory to write " + core::onOneLine(path), "; ");
+    } catch (const std::exception& fault) {
+      add(faults_, fault.what(), "; ");
+    }
+  }
+
+  void requireSuccess() const {
+    std::string faults = faults_;
+    if (!interrupted_.empty()) add(faults, interrupted_, "; ");
+    if (faults.empty()) return;
+    throw std::runtime_error(faults + "; written: " + (written_.empty() ? "no file" : written_));
+  }
+
+ private:
+  std::string written_, faults_, interrupted_;
+};
+
+}  // namespace
+
+void writeFiles(const Options& options, const Task& task, const Points& map,
+                const mesh::FaceDistortion& faces) {
+  Writing writing;
+  writing.write(options.output, [&](std::ostream& out) {
+    mesh::writeObj(out, {map, task.surface.faces}, throwIfInterrupted);
+  });
+  writing.write(options.uv, [&](std::ostream& out) {
+    mesh::writeObj(out, task.surface, mesh::longitudeLatitude(map, task.surface.faces),
+                   throwIfInterrupted);
+  });
+  writing.write(options.metrics, [&](std::ostream& out) {
+    mesh::writeMetrics(out, task.shares, faces, throwIfInterrupted);
+  });
+  writing.requireSuccess();
+}
+
+}  // namespace spherical_springs::relax_mesh

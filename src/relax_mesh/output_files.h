@@ -1,0 +1,19 @@
+// The files that a command line asks for.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "options.h"
+#include "spherical_springs/mesh/distortion.h"
+#include "spherical_springs/mesh/triangle_mesh.h"
+#include "task.h"
+
+namespace spherical_springs::relax_mesh {
+
+/// Writes every file that can be written, each whole.
+/// @throw std::runtime_error, after that, with the reasons why some could not, and the names of
+/// those that have been.
+void writeFiles(const Options& options, const Task& task, const Points& map,
+                const mesh::FaceDistortion& faces);
+
+}  // namespace spherical_springs::relax_mesh
