@@ -14,7 +14,8 @@ from relax_mesh import Outcome, command, relax_mesh
 from scenes import add_knot, exact, particle
 from shapes import SLOW, double_pyramid, mesh
 
-OCTANT = os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch', 'octant.json')
+OCTANT, PAN_TILT = (os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch', name)
+                    for name in ('octant.json', 'pan_tilt.json'))
 UNRELAXED = '; the map has been written, but springs have not relaxed it'
 
 
@@ -88,7 +89,7 @@ class TestMeanwhile(MeshTest):
 
         for name in ('ended', 'restarted', 'shrunk'):
             nodes[name].kill()
-        nodes['restarted'] = NodeProcess(name=nodes['restarted'].name, running=True)
+        nodes['restarted'] = NodeProcess(name=nodes['restarted'].name, scene=PAN_TILT)
         nodes['shrunk'] = NodeProcess(name=nodes['shrunk'].name, scene=OCTANT, max_springs=9)
         nodes['stopped'].send_signal(signal.SIGSTOP)
         cls.outcomes = {}
