@@ -40,7 +40,7 @@ struct Groups {
   std::string version_1, version_2;
 };
 
-/// From lines like `4:cpu,cpuacct:/path` and `0::/path` (man 7 cgroups).
+/// Reads lines like `4:cpu,cpuacct:/path` and `0::/path` (man 7 cgroups).
 Groups groupsOf(std::istream&& lines) {
   Groups groups;
   for (std::string line; std::getline(lines, line);) {
@@ -64,7 +64,7 @@ struct Mount {
   }
 };
 
-/// From lines like `36 35 98:0 /root /point rw,relatime master:1 - type source options` (man 5
+/// Reads lines like `36 35 98:0 /root /point rw,relatime master:1 - type source options` (man 5
 /// proc).
 std::vector<Mount> mountsOf(std::istream&& lines) {
   std::vector<Mount> mounts;
