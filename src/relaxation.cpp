@@ -168,7 +168,7 @@ class Relaxation {
     return false;
   }
 
-  /// Of the way to the limit, by the logarithm of the torque.
+  /// How much of the way to the limit is done, by the logarithm of the torque.
   double fraction() const {
     const double way = std::log(first_excess_);
     const double gone = std::log(first_excess_ / std::max(excess_, 1.));

@@ -29,7 +29,7 @@ namespace spherical_springs {
 /// takes memory.
 class Handlers {
  public:
-  /// What is passed must live longer. `frame_id`: of energies.
+  /// The arguments must live longer. `frame_id`: that of energies.
   Handlers(core::Runner& runner, News& news, const SceneDirectory& directory,
            const core::SceneLimits& limits, const std::string& frame_id)
       : runner_(runner), news_(news), directory_(directory), limits_(limits), frame_id_(frame_id) {}

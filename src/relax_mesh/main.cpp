@@ -104,7 +104,8 @@ void warn(const std::string& text) {
   std::cerr << "warning: " << core::onOneLine(text) << std::endl;
 }
 
-/// What springs make of a map that has been written, or nothing, with a warning that says why.
+/// Lets the node relax a map that has been written. Returns nothing where that fails, after a
+/// warning that says why.
 std::optional<Points> relaxed(SpringsNode& node, const Network& network, double max_time) {
   const std::string consequence = "; the map has been written, but springs have not relaxed it";
   try {

@@ -5,7 +5,8 @@
 namespace spherical_springs::relax_mesh {
 namespace {
 
-/// Of a spring that holds 1/2 J where its angle, or solid angle, is off by all of `rest`.
+/// The stiffness at which a spring holds 1/2 J where its angle, or solid angle, is off by all of
+/// `rest`.
 double stiffnessAt(double rest) { return 1 / (rest * rest); }
 
 }  // namespace

@@ -23,7 +23,7 @@ void add(std::string& list, const std::string& item, const char* separator) {
   list += (list.empty() ? "" : separator) + item;
 }
 
-/// What has been written of several files, and why others have not.
+/// Remembers which of several files have been written, and why others have not.
 class Writing {
  public:
   /// `path`: may be empty, for no file.

@@ -94,7 +94,7 @@ void requireRoom(const std::string& node, const std::string& limit, const std::s
                            "; start the node with a larger ~" + limit + remedy);
 }
 
-/// What is in one rising list and not in another.
+/// The ids of one rising list that are not in another.
 Ids without(const Ids& all, const Ids& some) {
   Ids rest;
   std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
@@ -226,8 +226,8 @@ Ids SpringsNode::replaceScene(const Network& network) {
   return own;
 }
 
-/// Of two clients who add to the scene at once, the one who was first has the lower ids, and waits
-/// until the other has withdrawn.
+/// Removes the particles of all others. Where two clients add to the scene at once, the one who was
+/// first has the lower ids, and waits until the other has withdrawn.
 void SpringsNode::removeOthers(const Ids& own) const {
   constexpr double kWithdrawal = 5;  // [s]
   const Deadline deadline(kWithdrawal);
