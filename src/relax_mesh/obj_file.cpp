@@ -10,7 +10,7 @@
 
 #include "../files.h"
 
-// A reader of our own: doc/maps.md says what the libraries do with files at fault.
+// A reader of our own: doc/history/obj_readers.md says what libraries do with files at fault.
 
 namespace spherical_springs::mesh {
 namespace {
