@@ -242,7 +242,7 @@ std::optional<Settings> parsed(int argc, char** argv) {
   add("only", po::value(&settings.only), "only networks with this in their names");
   add("without-ceres", po::bool_switch(&settings.without_ceres), "leave Ceres Solver out");
   add("tolerance", po::value(&settings.tolerance),
-      "largest torque left [N m]; default: 1e-9, for networks 1e-9 of the largest stiffness");
+      "largest torque left [N m]; default: 1e-9, for networks that of `relax`");
   add("max-time", po::value(&settings.max_time)->default_value(300), "of one relaxation [s]");
   add("write-scene", po::value(&settings.scene_file),
       "write the benchmark scene of the first level to this file, and measure nothing");

@@ -1,9 +1,11 @@
 """Clients of the node, each a process of its own: clients.py read, clients.py load SEED.
 
-`read` writes a line for every call: when, which, and how long it took. `load` listens, calls and
-goes away again, over and over.
+`read` writes a line for every call: when, which, how long it took, and how it ended. `load` listens,
+calls, adds a particle, removes it and goes away again, over and over; it writes a line for each
+particle of which it cannot tell whether it was added.
 """
 import contextlib
+import enum
 import random
 import sys
 import time
@@ -17,12 +19,19 @@ NAME = "spherical_springs"
 PAUSE = 0.02  # [s] between the calls of a reader
 
 
+class Ending(enum.Enum):
+    """How a call ended."""
+
+    answered = enum.auto()
+    refused = enum.auto()
+    lost = enum.auto()  # the connection ended before the answer came
+
+
 class Unread(GetScene._response_class):
     """A scene that is received but not taken apart, which takes Python longer than all else."""
 
     def deserialize(self, content):
-        if not content[0]:
-            raise RuntimeError("a reader was refused")
+        self.success = bool(content[0])
         return self
 
 
@@ -34,22 +43,37 @@ READS = {"get_scene": (GetUnreadScene, {}), "step": (Step, {"steps": 0})}
 
 
 def call(service, kind, **fields):
-    return rospy.ServiceProxy("%s/%s" % (NAME, service), kind)(**fields)
+    """Return the response, or None where it was lost, and the ending."""
+    try:
+        response = rospy.ServiceProxy("%s/%s" % (NAME, service), kind)(**fields)
+    except rospy.ServiceException:
+        if rospy.is_shutdown():
+            raise
+        return None, Ending.lost
+    return response, Ending.answered if response.success else Ending.refused
 
 
 def read():
     while not rospy.is_shutdown():
         for service, (kind, fields) in READS.items():
             begin = time.monotonic()
-            call(service, kind, **fields)
-            print(begin, service, time.monotonic() - begin, flush=True)
+            _, ending = call(service, kind, **fields)
+            print(begin, service, time.monotonic() - begin, ending.name, flush=True)
             time.sleep(PAUSE)
 
 
-def change_and_change_back():
-    added = call("add_particles", AddParticles, particles=[Particle(position=Point(1, 2, 3))])
-    if added.success:
-        call("remove_particles", RemoveParticles, ids=added.ids)
+def add_and_remove():
+    """Add a particle and remove it, however often that is refused."""
+    added, ending = call("add_particles", AddParticles,
+                         particles=[Particle(position=Point(1, 2, 3))])
+    if ending == Ending.lost:
+        print("lost", flush=True)
+    while ending == Ending.answered and not rospy.is_shutdown():
+        # Where an answer was lost, the particle may be gone: then the id is refused.
+        removed, _ = call("remove_particles", RemoveParticles, ids=added.ids)
+        if removed and (removed.success or "memory" not in removed.message):
+            return
+        time.sleep(PAUSE)
 
 
 def load(seed):
@@ -63,7 +87,7 @@ def load(seed):
             kind, fields = READS[service]
             call(service, kind, **fields)
             time.sleep(choice.random() / 2)
-        change_and_change_back()
+        add_and_remove()
         for listener in listeners:
             listener.unregister()
 

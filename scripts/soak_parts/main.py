@@ -1,4 +1,6 @@
 """A mesh of 10,242 particles runs at 1 kHz and relaxes, in turn, while others read, listen and go."""
+import argparse
+import collections
 import contextlib
 import os
 import pathlib
@@ -12,8 +14,11 @@ import mesh
 import network
 import numpy as np
 import rosgraph
+import rospy
+from clients import Ending
 from node import NAME, launched
-from spherical_springs.srv import Relax
+from short_memory import ShortMemory
+from spherical_springs.srv import GetScene, Relax
 from std_srvs.srv import SetBool, Trigger
 
 HERE = pathlib.Path(__file__).parent
@@ -26,29 +31,40 @@ GOAL = 50  # [ms]
 class Reader:
     """Times the calls of a process that does nothing else."""
 
-    def __init__(self, log):
-        self._log = log
-        self._file = open(log, "w")
-        self.process = start_client("read", output=self._file)
+    def __init__(self):
+        self._log = pathlib.Path("build/soak-latencies.txt")
+        self.process = start_client("read", log=self._log)
+
+    def calls(self, begin, end):
+        """Yield service, time taken [ms] and ending of each call that began in between."""
+        for line in self._log.read_text().splitlines():
+            when, service, took, ending = line.split()
+            if begin <= float(when) < end:
+                yield service, 1000 * float(took), Ending[ending]
 
     def latencies(self, begin, end):
-        """Of the calls that began in between, by service [ms]."""
-        found = {}
-        for line in self._log.read_text().splitlines():
-            when, service, took = line.split()
-            if begin <= float(when) < end:
-                found.setdefault(service, []).append(1000 * float(took))
+        """Return the times [ms] of the calls that were answered, by service."""
+        found = collections.defaultdict(list)
+        for service, took, ending in self.calls(begin, end):
+            if ending == Ending.answered:
+                found[service].append(took)
         return found
 
 
-def start_client(*arguments, output=None):
-    return subprocess.Popen([sys.executable, str(HERE / "clients.py"), *arguments], stdout=output)
+def start_client(*arguments, log):
+    with open(log, "w") as output:
+        return subprocess.Popen([sys.executable, str(HERE / "clients.py"), *arguments],
+                                stdout=output)
+
+
+def load_log(seed):
+    return pathlib.Path("build/soak-load-%d.txt" % seed)
 
 
 @contextlib.contextmanager
 def clients():
-    reader = Reader(pathlib.Path("build/soak-latencies.txt"))
-    loads = [start_client("load", str(seed)) for seed in range(LOADS)]
+    reader = Reader()
+    loads = [start_client("load", str(seed), log=load_log(seed)) for seed in range(LOADS)]
     try:
         yield reader
         gone = [p for p in (reader.process, *loads) if p.poll() is not None]
@@ -60,11 +76,14 @@ def clients():
             process.wait()
 
 
-def resident_memory():
-    """Of the node [MB]."""
-    master = rosgraph.Master("/soak")
-    address = master.lookupNode("/" + NAME)
+def process_of_node():
+    address = rosgraph.Master("/soak").lookupNode("/" + NAME)
     _, _, pid = xmlrpc.client.ServerProxy(address).getPid("/soak")
+    return pid
+
+
+def resident_memory(pid):
+    """Return the resident memory of a process [MB]."""
     with open("/proc/%d/status" % pid) as status:
         return next(int(line.split()[1]) / 1000 for line in status if line.startswith("VmRSS"))
 
@@ -75,20 +94,34 @@ def send_mesh(node):
     network.send(node, points, mesh.edges_of(faces), faces, areas / areas.sum())
 
 
+def keep_on(node, service, kind, **fields):
+    """Call until it is done, however often memory is too short for it or the answer is lost."""
+    while True:
+        try:
+            return node.call(service, kind, **fields)
+        except rospy.ServiceException:
+            pass
+        except RuntimeError as refusal:
+            if "memory" not in str(refusal):
+                raise
+        time.sleep(0.02)
+
+
 def run(node, seconds):
-    node.call("set_running", SetBool, data=True)
+    keep_on(node, "set_running", SetBool, data=True)
     time.sleep(seconds)
-    node.call("set_running", SetBool, data=False)
+    keep_on(node, "set_running", SetBool, data=False)
 
 
 def relax(node, seconds, **fields):
     """Relaxes from the start, again and again."""
     end = time.monotonic() + seconds
-    timer = threading.Timer(seconds, node.call, ("cancel", Trigger))
+    timer = threading.Timer(seconds, keep_on, (node, "cancel", Trigger))
     timer.start()
     while time.monotonic() < end:
-        node.call("reset", Trigger)
-        node.call("relax", Relax, tolerance=1e-30, max_time=max(0.1, end - time.monotonic()), **fields)
+        keep_on(node, "reset", Trigger)
+        keep_on(node, "relax", Relax, tolerance=1e-30, max_time=max(0.1, end - time.monotonic()),
+                **fields)
     timer.join()
 
 
@@ -99,20 +132,26 @@ TURNS = {
 }
 
 
-def soak(node, seconds):
-    """What each turn of each round came to: its name, latencies by service, memory at its end."""
+def soak(node, pid, seconds):
+    """Return what each turn of each round came to, and how all calls of the reader ended.
+
+    A turn comes to its name, latencies by service, and memory at its end.
+    """
     rounds = max(3, round(seconds / (LONGEST_TURN * len(TURNS))))
     turn = seconds / rounds / len(TURNS)
     results = []
+    start = time.monotonic()
     with clients() as reader:
         for number in range(rounds):
             for name, work in TURNS.items():
                 begin = time.monotonic()
                 work(node, turn)
                 latencies = reader.latencies(begin, time.monotonic())
-                results.append((number, name, latencies, resident_memory()))
+                results.append((number, name, latencies, resident_memory(pid)))
                 tell(*results[-1])
-    return results
+        endings = collections.Counter(
+            ending for _, _, ending in reader.calls(start, time.monotonic()))
+    return results, endings
 
 
 def tell(number, name, latencies, memory):
@@ -142,14 +181,48 @@ def sum_up(results):
     return max(memory[-third:]) <= GROWTH * max(memory[third:2 * third]) + SLACK
 
 
-def main(seconds):
+def check_endings(endings, short_memory):
+    """Tell how the calls ended; end where memory was short and bit nobody, or the other way round."""
+    print("calls of the reader: " + ", ".join("%d %s" % (endings[e], e.name) for e in Ending))
+    if short_memory and not endings[Ending.refused]:
+        sys.exit("error: no call was refused: the limit of memory did not bite")
+    if not short_memory and endings[Ending.answered] != sum(endings.values()):
+        sys.exit("error: calls were refused or lost")
+
+
+def check_scene(node, before):
+    """End unless the scene holds what it held before, and particles of lost calls at most."""
+    after = node.call("get_scene", GetScene)
+    lost = sum(len(load_log(seed).read_text().splitlines()) for seed in range(LOADS))
+    added = len(after.particle_ids) - len(before.particle_ids)
+    print("particles that lost calls have added: %d of %d" % (added, lost))
+    if (not 0 <= added <= lost or after.angle_springs != before.angle_springs
+            or after.solid_angle_springs != before.solid_angle_springs):
+        sys.exit("error: the scene has changed")
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="scripts/soak", description=__doc__)
+    parser.add_argument("seconds", type=float, nargs="?", default=3600)
+    parser.add_argument("--short-memory", action="store_true",
+                        help="limit the node's memory, with little room that changes all the time")
+    return parser.parse_args()
+
+
+def main(seconds, short_memory):
     os.makedirs("build", exist_ok=True)
     with launched("spherical_springs.launch", "running:=false", log="build/soak-node.log") as node:
         send_mesh(node)
-        results = soak(node, seconds)
-    if not sum_up(results):
+        before = node.call("get_scene", GetScene)
+        pid = process_of_node()
+        with ShortMemory(pid) if short_memory else contextlib.nullcontext():
+            results, endings = soak(node, pid, seconds)
+        check_scene(node, before)
+    memory_stayed = sum_up(results)
+    check_endings(endings, short_memory)
+    if not memory_stayed:
         sys.exit("error: memory has grown")
 
 
 if __name__ == "__main__":
-    main(float(sys.argv[1]))
+    main(**vars(parse()))
