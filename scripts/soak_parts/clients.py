@@ -7,7 +7,9 @@ particle of which it cannot tell whether it was added.
 import contextlib
 import enum
 import random
+import signal
 import sys
+import threading
 import time
 
 import rospy
@@ -17,6 +19,7 @@ from spherical_springs.srv import AddParticles, GetScene, RemoveParticles, Step
 
 NAME = "spherical_springs"
 PAUSE = 0.02  # [s] between the calls of a reader
+over = threading.Event()  # set by SIGTERM: a client puts back what it has changed and ends
 
 
 class Ending(enum.Enum):
@@ -47,14 +50,12 @@ def call(service, kind, **fields):
     try:
         response = rospy.ServiceProxy("%s/%s" % (NAME, service), kind)(**fields)
     except rospy.ServiceException:
-        if rospy.is_shutdown():
-            raise
         return None, Ending.lost
     return response, Ending.answered if response.success else Ending.refused
 
 
 def read():
-    while not rospy.is_shutdown():
+    while not over.is_set():
         for service, (kind, fields) in READS.items():
             begin = time.monotonic()
             _, ending = call(service, kind, **fields)
@@ -63,22 +64,26 @@ def read():
 
 
 def add_and_remove():
-    """Add a particle and remove it, however often that is refused."""
+    """Add a particle and remove it, however often memory or a relaxation stands in the way."""
     added, ending = call("add_particles", AddParticles,
                          particles=[Particle(position=Point(1, 2, 3))])
     if ending == Ending.lost:
         print("lost", flush=True)
-    while ending == Ending.answered and not rospy.is_shutdown():
-        # Where an answer was lost, the particle may be gone: then the id is refused.
-        removed, _ = call("remove_particles", RemoveParticles, ids=added.ids)
-        if removed and (removed.success or "memory" not in removed.message):
+    if ending != Ending.answered:
+        return
+    any_lost = False
+    while True:
+        _, ending = call("remove_particles", RemoveParticles, ids=added.ids)
+        any_lost = any_lost or ending == Ending.lost
+        # Where an answer was lost, the particle may be gone: then its id is refused.
+        if ending == Ending.answered or (ending == Ending.refused and any_lost):
             return
         time.sleep(PAUSE)
 
 
 def load(seed):
     choice = random.Random(seed)
-    while not rospy.is_shutdown():
+    while not over.is_set():
         topics = choice.sample(["poses", "energies", "status"], choice.randint(1, 3))
         listeners = [rospy.Subscriber("%s/%s" % (NAME, topic), rospy.AnyMsg, lambda _: None)
                      for topic in topics]
@@ -93,7 +98,9 @@ def load(seed):
 
 
 if __name__ == "__main__":
-    rospy.init_node(sys.argv[1], anonymous=True)
+    rospy.init_node(sys.argv[1], anonymous=True, disable_signals=True)
+    signal.signal(signal.SIGTERM, lambda *_: over.set())
     # The node may go first.
-    with contextlib.suppress(rospy.ServiceException, rospy.ROSException, rospy.ROSInterruptException):
+    with contextlib.suppress(rospy.ROSException, rospy.ROSInterruptException):
         read() if sys.argv[1] == "read" else load(int(sys.argv[2]))
+    rospy.signal_shutdown("the soak is over")

@@ -16,7 +16,7 @@ import numpy as np
 import rosgraph
 import rospy
 from clients import Ending
-from node import NAME, launched
+from node import DEADLINE, NAME, launched
 from short_memory import ShortMemory
 from spherical_springs.srv import GetScene, Relax
 from std_srvs.srv import SetBool, Trigger
@@ -73,7 +73,16 @@ def clients():
     finally:
         for process in (reader.process, *loads):
             process.terminate()
-            process.wait()
+        for process in (reader.process, *loads):
+            end(process)
+
+
+def end(process):
+    try:
+        process.wait(DEADLINE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def process_of_node():
@@ -182,7 +191,7 @@ def sum_up(results):
 
 
 def check_endings(endings, short_memory):
-    """Tell how the calls ended; end where memory was short and bit nobody, or the other way round."""
+    """Tell how the calls ended; exit where none was refused for memory, or one was without need."""
     print("calls of the reader: " + ", ".join("%d %s" % (endings[e], e.name) for e in Ending))
     if short_memory and not endings[Ending.refused]:
         sys.exit("error: no call was refused: the limit of memory did not bite")
@@ -191,7 +200,7 @@ def check_endings(endings, short_memory):
 
 
 def check_scene(node, before):
-    """End unless the scene holds what it held before, and particles of lost calls at most."""
+    """Exit unless the scene holds what it held before, and particles of lost calls at most."""
     after = node.call("get_scene", GetScene)
     lost = sum(len(load_log(seed).read_text().splitlines()) for seed in range(LOADS))
     added = len(after.particle_ids) - len(before.particle_ids)
@@ -217,9 +226,9 @@ def main(seconds, short_memory):
         pid = process_of_node()
         with ShortMemory(pid) if short_memory else contextlib.nullcontext():
             results, endings = soak(node, pid, seconds)
+        memory_stayed = sum_up(results)
+        check_endings(endings, short_memory)
         check_scene(node, before)
-    memory_stayed = sum_up(results)
-    check_endings(endings, short_memory)
     if not memory_stayed:
         sys.exit("error: memory has grown")
 
