@@ -25,6 +25,7 @@ namespace spherical_springs::relax_mesh {
 namespace {
 
 constexpr double kStart = 10;        // for a node that is about to start [s]
+constexpr double kStatus = 10;       // for the status, which a node that lives sends at once [s]
 constexpr double kPrecision = 1e-6;  // of the areas' shares
 
 const ros::WallDuration kBetweenLooks(0.02);
@@ -57,7 +58,7 @@ class ShowProgress {
   ros::AsyncSpinner spinner_{1};
 };
 
-/// "running", "paused" or "relaxing"; an empty text where the node says nothing for a second.
+/// "running", "paused" or "relaxing"; an empty text where the node says nothing in time.
 std::string stateOf(const std::string& node) {
   ros::CallbackQueue queue;
   ros::NodeHandle handle;
@@ -65,7 +66,7 @@ std::string stateOf(const std::string& node) {
   std::string state;
   const ros::Subscriber status = handle.subscribe<Status>(
       node + "/status", 1, [&](const Status::ConstPtr& message) { state = message->state; });
-  for (const Deadline deadline(1); state.empty() && !deadline.isOver();) {
+  for (const Deadline deadline(kStatus); state.empty() && !deadline.isOver();) {
     queue.callAvailable(kBetweenLooks);
   }
   return state;

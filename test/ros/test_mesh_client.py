@@ -15,7 +15,7 @@ from spherical_springs.srv import (
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mesh_test import MeshTest
-from node_client import LONG, PACKAGE, wait_until
+from node_client import LONG, PACKAGE
 from relax_mesh import command, relax_mesh
 from scenes import particle
 from shapes import bumpy, mesh
@@ -46,6 +46,8 @@ class EndlessNode:
             ('get_scene', GetScene, lambda _: {'success': True}),
             ('relax', Relax, self.relax),
             ('cancel', Trigger, self.cancel))]
+        self.status = rospy.Publisher(name + '/status', Status, queue_size=1, latch=True)
+        self.status.publish(state='paused', relax_progress=0.99)  # of an earlier relaxation
 
     def relax(self, _):
         self.relaxing.set()
@@ -57,6 +59,7 @@ class EndlessNode:
         return TriggerResponse(success=True)
 
     def shutdown(self):
+        self.status.unregister()
         for service in self.services:
             service.shutdown()
 
@@ -128,17 +131,14 @@ class TestProgress(MeshTest):
     def test_a_terminal_shows_how_far_it_has_come(self):
         node = EndlessNode('/endless')
         self.addCleanup(node.shutdown)
-        status = rospy.Publisher('/endless/status', Status, queue_size=1, latch=True)
-        self.addCleanup(status.unregister)
-        status.publish(state='paused', relax_progress=0.99)  # of an earlier one
         terminal, its_other_end = pty.openpty()
         self.addCleanup(os.close, terminal)
         process = subprocess.Popen(
             command(mesh=self.write('surface.obj', *bumpy(1)), output=self.path('sphere.obj'),
                     node='/endless'), stdout=subprocess.DEVNULL, stderr=its_other_end)
         os.close(its_other_end)
-        wait_until(status.get_num_connections)
-        status.publish(state='relaxing', relax_progress=0.43)
+        self.assertTrue(node.relaxing.wait(LONG))
+        node.status.publish(state='relaxing', relax_progress=0.43)
         shown = ''
 
         def read_until(text):
