@@ -13,7 +13,7 @@ namespace spherical_springs::mesh {
 class TimeIsOver : public std::exception {};
 
 /// Tells how long the search for a map goes on: until the time of its options is over or their
-/// `go_on` has returned false, but not before there is a map.
+/// `go_on` has returned false, or memory has run out, but not before there is a map.
 class MapClock {
  public:
   /// Starts now. `go_on` is called on this thread only. `options` must live longer.
@@ -29,6 +29,10 @@ class MapClock {
   void haveMap() { has_map_ = true; }
   bool hasMap() const { return has_map_; }
 
+  /// Ends the search, as memory has run out. For the thread that made the clock.
+  void endWithoutMemory() { out_of_memory_ = ended_ = true; }
+  bool outOfMemory() const { return out_of_memory_; }
+
   /// Whether to go on, which is so without a map whatever the time.
   bool ended() const { return ended_ && has_map_; }
 
@@ -41,6 +45,7 @@ class MapClock {
   const std::thread::id thread_ = std::this_thread::get_id();
   const Clock::time_point begin_ = Clock::now();
   double last_call_ = 0;  // of `go_on` [s]
+  bool out_of_memory_ = false;
   std::atomic<bool> ended_{false}, has_map_{false};
 };
 

@@ -126,8 +126,12 @@ void MapEnergy::put(std::vector<Vector3> points) {
 
 Points MapEnergy::points() const {
   Points result(3, static_cast<Eigen::Index>(vertices_.size()));
-  for (std::size_t n = 0; n < vertices_.size(); ++n) result.col(vertices_[n]) = points_[n];
+  writePoints(result);
   return result;
+}
+
+void MapEnergy::writePoints(Points& points) const {
+  for (std::size_t n = 0; n < vertices_.size(); ++n) points.col(vertices_[n]) = points_[n];
 }
 
 std::vector<Vector3> MapEnergy::moved(const Eigen::VectorXd& step) const {
@@ -253,11 +257,11 @@ void MapEnergy::sweep() {
   std::vector<Vector3> before = points_;
   try {
     moveEachAlone();
+    if (valueAt(points_) < kInfinity) return;
   } catch (...) {
     put(std::move(before));
     throw;
   }
-  if (valueAt(points_) < kInfinity) return;
   put(std::move(before));  // positive faces round a vertex alone may cover a part twice
 }
 

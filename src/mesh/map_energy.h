@@ -23,8 +23,8 @@ class MapEnergy {
  public:
   using Hessian = core::Blocks<double, 2>;
 
-  /// `points`: about where vertices are, for their order. What `checkpoint` throws ends `evaluate`
-  /// or `sweep`, with vertices where they were.
+  /// `points`: about where vertices are, for their order. What `checkpoint` throws, or want of
+  /// memory, ends `evaluate` or `sweep`, with vertices where they were.
   MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points, int threads,
             const core::Checkpoint& checkpoint = core::passAll);
 
@@ -42,7 +42,8 @@ class MapEnergy {
 
   /// Puts vertices somewhere; `evaluate` is to follow.
   void place(const Points& points);
-  Points points() const;  ///< in the order of the mesh
+  Points points() const;                   ///< in the order of the mesh
+  void writePoints(Points& points) const;  ///< the same over others, without memory
 
   /// The energy that vertices would have after a step along their tangent planes.
   double valueAfter(const Eigen::VectorXd& step) const;

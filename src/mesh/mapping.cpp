@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "basin_hopping.h"
@@ -46,26 +48,38 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 
 }  // namespace
 
-Points Mapping::run(const std::optional<Points>& start) {
+Points Mapping::run(std::optional<Points> start) {
   Candidates candidates;
   Candidate best;
-  try {
-    search(start, candidates, best);
-  } catch (const TimeIsOver&) {  // with what has been found
-  }
-  if (best.points.size() == 0 && !candidates.empty()) best = candidates.back();
+  unlessItEnds([&] { search(std::move(start), candidates, best); });
+  if (best.points.size() == 0 && !candidates.empty()) best = std::move(candidates.back());
   if (best.points.size() == 0) throw NoMap("no map without folds was found");
-  return best.points;
+  if (clock_.outOfMemory()) options_.out_of_memory();
+  return std::move(best.points);
 }
 
-void Mapping::search(const std::optional<Points>& start, Candidates& candidates, Candidate& best) {
+/// Works until time or memory is over, which ends the search where there is a map.
+template <class Work>
+void Mapping::unlessItEnds(const Work& work) {
+  try {
+    work();
+  } catch (const TimeIsOver&) {
+  } catch (const std::bad_alloc&) {
+    if (!clock_.hasMap()) throw;
+    clock_.endWithoutMemory();
+  }
+}
+
+/// A candidate is moved into its place, which takes no memory, so that none is lost.
+void Mapping::search(std::optional<Points> start, Candidates& candidates, Candidate& best) {
   constexpr double kPromising = 10;  // tolerances
   // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices, and
   // of a small coarsest mesh and the mesh itself wherever that is one to begin with.
   const double several =
       std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
   std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
-  if (start) add(roundedOff(*start), candidates);
+  candidates.reserve(sizes.size() + 1);
+  if (start) add(roundedOff(std::move(*start)), candidates);
   int tried = 0;
   while (!clock_.hasMap() || (best.spread > wantedSpread() && clock_.goOn())) {
     const bool promising =
@@ -76,7 +90,7 @@ void Mapping::search(const std::optional<Points>& start, Candidates& candidates,
       sizes.erase(sizes.begin());
       ++tried;
     } else if (!candidates.empty()) {
-      Candidate next = finished(candidates.back());
+      Candidate next = finished(std::move(candidates.back()));
       candidates.pop_back();
       tried = 0;
       if (best.points.size() == 0 || next.spread < best.spread) best = std::move(next);
@@ -171,7 +185,7 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
   constexpr int kMostRoots = 5;  // from a range of 1e6 to 1.5
   Decimation meshes = decimation(faces_, shares_, vertices_, size, checkpoint_);
   for (int root = 0; root <= kMostRoots; ++root) {
-    if (const auto points = evenedOut(meshes)) return roundedOff(*points);
+    if (auto points = evenedOut(meshes)) return roundedOff(std::move(*points));
     if (clock_.hasMap()) break;
     for (MeshLevel& level : meshes.levels) {
       level.shares = level.shares.cwiseSqrt();
@@ -182,11 +196,11 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
 }
 
 /// Lowers the weight of the faces' shape, as long as that is quick.
-Mapping::Candidate Mapping::roundedOff(const Points& points) {
+Mapping::Candidate Mapping::roundedOff(Points points) {
   constexpr double kLeastShape = 1e-5;
   constexpr double kAlikeFrom = 1e-3;  // where areas are right enough for all faces to count alike
   clock_.haveMap();
-  return improved({points}, [&](MapEnergy& energy, MapDescent& descent) {
+  return improved({std::move(points)}, [&](MapEnergy& energy, MapDescent& descent) {
     for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
          shape *= kLowering) {
       energy.setShape(shape);
@@ -197,8 +211,8 @@ Mapping::Candidate Mapping::roundedOff(const Points& points) {
 }
 
 /// Minimises the energy that is wanted.
-Mapping::Candidate Mapping::finished(const Candidate& candidate) {
-  return improved(candidate, [&](MapEnergy& energy, MapDescent& descent) {
+Mapping::Candidate Mapping::finished(Candidate candidate) {
+  return improved(std::move(candidate), [&](MapEnergy& energy, MapDescent& descent) {
     if (options_.angle_weight > 0) {
       energy.setShape(options_.angle_weight);
       descent.run(FaceHessian::exact, kNothing, [&] { return clock_.goOn(); });
@@ -208,18 +222,19 @@ Mapping::Candidate Mapping::finished(const Candidate& candidate) {
   });
 }
 
-/// Returns how far `improve(energy, descent)` comes from a map before the time is over.
+/// Returns how far `improve(energy, descent)` comes from a map before time or memory is over.
 template <class Improve>
-Mapping::Candidate Mapping::improved(const Candidate& from, const Improve& improve) {
+Mapping::Candidate Mapping::improved(Candidate map, const Improve& improve) {
   std::optional<MapEnergy> energy;
-  try {
-    energy.emplace(faces_, shares_, from.points, options_.threads, checkpoint_);
+  unlessItEnds([&] {
+    energy.emplace(faces_, shares_, map.points, options_.threads, checkpoint_);
     MapDescent descent(*energy, options_.threads, checkpoint_);
     improve(*energy, descent);
-  } catch (const TimeIsOver&) {
-    if (!energy) return from;
-  }
-  return {energy->points(), energy->spread()};
+  });
+  if (!energy) return map;
+  energy->writePoints(map.points);
+  unlessItEnds([&] { map.spread = energy->spread(); });
+  return map;
 }
 
 /// Steps of all vertices and hops of patches in turn, more of what lowers the energy more: what is

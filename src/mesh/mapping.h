@@ -21,7 +21,7 @@ class Mapping {
       : faces_(faces), shares_(shares), vertices_(vertices), options_(options), clock_(options) {}
 
   /// `start`, if any, must cover the sphere once.
-  Points run(const std::optional<Points>& start);
+  Points run(std::optional<Points> start);
 
  private:
   struct Candidate {
@@ -30,16 +30,18 @@ class Mapping {
   };
   using Candidates = std::vector<Candidate>;
 
-  void search(const std::optional<Points>& start, Candidates& candidates, Candidate& best);
+  template <class Work>
+  void unlessItEnds(const Work& work);
+  void search(std::optional<Points> start, Candidates& candidates, Candidate& best);
   void add(Candidate candidate, Candidates& candidates);
   std::optional<Points> coarsestMap(const MeshLevel& level);
   std::optional<Points> coarsestMap(const MeshLevel& level, Eigen::Index cut);
   std::optional<Points> evenedOut(const Decimation& meshes);
   std::optional<Candidate> prepared(std::int32_t size);
-  Candidate roundedOff(const Points& points);
-  Candidate finished(const Candidate& candidate);
+  Candidate roundedOff(Points points);
+  Candidate finished(Candidate candidate);
   template <class Improve>
-  Candidate improved(const Candidate& from, const Improve& improve);
+  Candidate improved(Candidate map, const Improve& improve);
   void finishAreas(MapEnergy& energy, MapDescent& descent);
   bool hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile);
   double wantedSpread() const;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "coverage.h"
 #include "mapping.h"
@@ -106,10 +107,10 @@ Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const 
   requireTopologicalSphere(mesh);
   requireShares(mesh, shares);
   requireOptions(options);
-  const Points own = directions(mesh, start);
+  Points own = directions(mesh, start);
   if (!coversOnce(mesh.faces, own)) return sphereMap(mesh, shares, options);
   return Mapping(mesh.faces, shares, static_cast<std::int32_t>(mesh.vertices.cols()), options)
-      .run(own);
+      .run(std::move(own));
 }
 
 }  // namespace spherical_springs::mesh

@@ -119,7 +119,10 @@ bool MultifrontalCholesky::refresh(const Blocks<double, 2>& values) {
 
 void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<double>& correction) {
   const auto& parts = dissection_.parts;
-  Eigen::VectorXd x(residual.size()), gathered;
+  std::size_t longest = 0;
+  for (const auto& part : parts) longest = std::max(longest, part.boundary.size());
+  // Eigen's vectors do not survive it when there is no memory for another size.
+  Eigen::VectorXd x(residual.size()), gathered(2 * longest);
   for (std::size_t place = 0; place < dissection_.order.size(); ++place) {
     x.segment<2>(2 * place) = residual.segment<2>(2 * dissection_.order[place]);
   }
@@ -129,7 +132,7 @@ void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<doub
     auto part = x.segment(2 * parts[p].first, own);
     fronts_[p].own.triangularView<Eigen::Lower>().solveInPlace(part);
     if (parts[p].boundary.empty()) continue;
-    gathered.noalias() = fronts_[p].below * part;
+    gathered.head(fronts_[p].below.rows()).noalias() = fronts_[p].below * part;
     for (std::size_t k = 0; k < parts[p].boundary.size(); ++k) {
       x.segment<2>(2 * parts[p].boundary[k]) -= gathered.segment<2>(2 * k);
     }
@@ -139,11 +142,10 @@ void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<doub
     const auto own = fronts_[p].own.cols();
     auto part = x.segment(2 * parts[p].first, own);
     if (!parts[p].boundary.empty()) {
-      gathered.resize(2 * parts[p].boundary.size());
       for (std::size_t k = 0; k < parts[p].boundary.size(); ++k) {
         gathered.segment<2>(2 * k) = x.segment<2>(2 * parts[p].boundary[k]);
       }
-      part.noalias() -= fronts_[p].below.transpose() * gathered;
+      part.noalias() -= fronts_[p].below.transpose() * gathered.head(fronts_[p].below.rows());
     }
     fronts_[p].own.triangularView<Eigen::Lower>().transpose().solveInPlace(part);
   }

@@ -31,6 +31,7 @@ using mesh::FaceDistortion;
 constexpr double kWeakest = 1e-5;
 
 constexpr const char* kNoMemory = "there is not enough memory";
+constexpr const char* kMapSoFar = " to improve the map further; the best so far has been written";
 
 /// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 80 for 50,000.
 struct Times {
@@ -59,7 +60,8 @@ void print(const char* when, const FaceDistortion& faces, double seconds) {
       "(--sphere), or give a mesh with fewer thin triangles and areas that differ less");
 }
 
-Points mapOf(const Task& task, const Options& asked) {
+/// `out_of_memory`: whether that is why the map is no better.
+Points mapOf(const Task& task, const Options& asked, bool& out_of_memory) {
   mesh::MapOptions options;
   options.angle_weight = asked.angle_weight;
   options.max_time = Times(task.surface.vertices.cols()).map;
@@ -70,6 +72,7 @@ Points mapOf(const Task& task, const Options& asked) {
     throwIfInterrupted();
     return ros::ok();
   };
+  options.out_of_memory = [&] { out_of_memory = true; };
   try {
     return about(task.shares_from, [&] {
       return task.start ? sphereMap(task.surface, task.shares, *task.start, options)
@@ -162,10 +165,12 @@ void run(const Options& options) {
   }
   const auto begin = ros::WallTime::now();
   if (task.start) printStart(distortionOf(*task.start));
-  const Points map = mapOf(task, options);
+  bool out_of_memory = false;
+  const Points map = mapOf(task, options, out_of_memory);
   FaceDistortion faces = distortionOf(map);
   if (!coversOnce(summary(faces))) refuseWithoutMap(options.mesh);
   writeFiles(options, task, map, faces);
+  if (out_of_memory) warn(std::string(kNoMemory) + kMapSoFar);
   if (!task.start) print("before", faces, secondsSince(begin));
 
   const Network network{map, triangles, task.shares, kWeakest + options.angle_weight};

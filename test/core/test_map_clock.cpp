@@ -50,6 +50,17 @@ TEST(MapClock, EndsWhenItIsToldOnce) {
   EXPECT_THROW(clock.check(), TimeIsOver);
 }
 
+TEST(MapClock, EndsWithoutMemory) {
+  const MapOptions options = endless();
+  MapClock clock(options);
+  clock.haveMap();
+  EXPECT_FALSE(clock.outOfMemory());
+  clock.endWithoutMemory();
+  EXPECT_TRUE(clock.outOfMemory());
+  EXPECT_FALSE(clock.goOn());
+  EXPECT_THROW(clock.check(), TimeIsOver);
+}
+
 TEST(MapClock, CallsAgainWhileThereIsNoMap) {
   MapOptions options;
   options.max_time = 0;

@@ -1,52 +1,20 @@
 // Memory that runs out at any allocation of a call leaves everything as it was.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstddef>
 #include <functional>
-#include <future>
 #include <new>
 #include <sstream>
 #include <thread>
 
+#include "failing_malloc.h"
 #include "relaxation_scenes.h"
 #include "spherical_springs/runner.h"
 #include "spherical_springs/simulation.h"
 
-namespace {
-
-// Counted down by allocations; the one that finds 0 fails. Below zero: no bound.
-thread_local long allocations_left = -1;          // of this thread
-std::atomic<long> allocations_left_anywhere{-1};  // of all threads
-std::atomic<bool> later_ones_fail_too{false};
-
-thread_local bool is_victim = false;
-std::atomic<bool> victims_fail{false};
-
-bool fails() {
-  if (is_victim && victims_fail) return true;
-  if (allocations_left >= 0 && allocations_left-- == 0) return true;
-  long left = allocations_left_anywhere;
-  while (left >= 0) {
-    if (left == 0 && later_ones_fail_too) return true;
-    if (allocations_left_anywhere.compare_exchange_weak(left, left - 1)) return left == 0;
-  }
-  return false;
-}
-
-}  // namespace
-
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-// The C library's own, but for those that fail when they are told to.
-extern "C" void* malloc(std::size_t size) { return fails() ? nullptr : __libc_malloc(size); }
-extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  return fails() ? nullptr : __libc_memalign(alignment, size);
-}
-
 namespace spherical_springs::core {
 namespace {
+
+using testing::ShortOfMemory;
 
 SpringIds allIds(const Scene& scene) {
   SpringIds ids;
@@ -86,9 +54,9 @@ class OutOfMemory : public ::testing::Test {
       for (int i = 0; i < 5; ++i) simulation.step();
       const std::string before = bitsOf(simulation);
       try {
-        allocations_left = failures;
+        testing::allocations_left = failures;
         change(simulation);
-        allocations_left = -1;
+        testing::allocations_left = -1;
         succeeded = true;
         EXPECT_NE(bitsOf(simulation), before);
       } catch (const std::bad_alloc&) {
@@ -139,44 +107,6 @@ TEST_F(OutOfMemory, WhileASceneIsReset) {
 TEST_F(OutOfMemory, WhileASceneIsLoaded) {
   expectAllOrNothing([this](Simulation& s) { s.load({testing::randomScene(2, 20, 5), 3.}); });
 }
-
-/// Lets allocations of all threads fail.
-class ShortOfMemory : public ::testing::Test {
- protected:
-  ~ShortOfMemory() override { allocations_left_anywhere = -1; }
-
-  /// Lets the allocation at `number` of a call fail, on whatever thread it is, and all later ones
-  /// where `for_good`.
-  /// @return whether the call threw for it.
-  template <class Call>
-  static bool fails(long number, bool for_good, const Call& call) {
-    later_ones_fail_too = for_good;
-    allocations_left_anywhere = number;
-    bool failed = false;
-    try {
-      call();
-    } catch (const std::bad_alloc&) {
-      failed = true;
-    } catch (const std::system_error&) {  // of a thread that could not be started
-      failed = true;
-    }
-    allocations_left_anywhere = -1;
-    return failed;
-  }
-
-  /// Calls once for each allocation that may fail, later ones at growing distances, with `check`
-  /// after each failure, until a call succeeds.
-  /// @return how often it failed.
-  template <class Call, class Check>
-  static int failAgainAndAgain(bool for_good, const Call& call, const Check& check) {
-    int failures = 0;
-    for (long number = 0; fails(number, for_good, call); number += 1 + number / 16) {
-      check("at allocation " + std::to_string(number));
-      ++failures;
-    }
-    return failures;
-  }
-};
 
 struct Stepping {
   IntegrationMethod method;
@@ -338,7 +268,7 @@ TEST(CancelledShortOfMemory, GoesOn) {
   endless.tolerance = 1e-300;
   bool threw = false;
   std::thread caller([&] {
-    is_victim = true;
+    testing::is_victim = true;
     try {
       runner.relax(endless);
     } catch (const std::bad_alloc&) {
@@ -346,10 +276,10 @@ TEST(CancelledShortOfMemory, GoesOn) {
     }
   });
   while (runner.snapshot().state.positions == start) std::this_thread::yield();
-  victims_fail = true;
+  testing::victims_fail = true;
   runner.cancel();
   caller.join();
-  victims_fail = false;
+  testing::victims_fail = false;
   EXPECT_TRUE(threw);
   EXPECT_EQ(positions(), start);
   EXPECT_TRUE(runner.relax({}).converged);

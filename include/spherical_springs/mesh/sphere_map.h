@@ -27,8 +27,12 @@ struct MapOptions {
   int threads = 1;       ///< results do not depend on it, to the last bit, unless time runs out
   /// Called on the thread of the caller, several times a second in every phase, with the share of
   /// the time that is over, from 0 to 1. Returning false once ends the search with the best map so
-  /// far, or with the first where there is none yet. What it throws comes out.
+  /// far, or with the first where there is none yet. What it throws comes out, but for
+  /// std::bad_alloc, which is taken as a lack of memory.
   std::function<bool(double fraction)> go_on = [](double) { return true; };
+  /// Called once where memory has run out in the middle of the search, and what comes out is the
+  /// best map so far. Where there is none yet, std::bad_alloc comes out instead.
+  std::function<void()> out_of_memory = [] {};
 };
 
 /// One unit vector a vertex: a map of the mesh to the sphere on which every face is oriented as in
