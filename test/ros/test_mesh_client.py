@@ -2,6 +2,7 @@
 
 import os
 import pty
+import resource
 import select
 import signal
 import subprocess
@@ -15,8 +16,8 @@ from spherical_springs.srv import (
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mesh_test import MeshTest
-from node_client import LONG, PACKAGE
-from relax_mesh import command, relax_mesh
+from node_client import LONG, PACKAGE, wait_until
+from relax_mesh import Outcome, command, relax_mesh
 from scenes import particle
 from shapes import bumpy, mesh
 
@@ -154,6 +155,54 @@ class TestProgress(MeshTest):
         read_until('not relaxed it')
         self.assertIn('43 %\r\x1b[Kerror: interrupted', shown)
         process.wait(LONG)
+
+
+class TestShortMemory(MeshTest):
+    SAID = ('warning: there is not enough memory to improve the map further; the best so far has '
+            'been written')
+
+    def limited_after(self, seconds):
+        """The outcome, and its lines of errors, of a command that may take no more memory when it
+        has worked so long, until there is a map."""
+        # Without a heap of its own all but the smallest pieces of memory count at once.
+        environment = {**os.environ, 'MALLOC_MMAP_THRESHOLD_': '4096'}
+        process = subprocess.Popen(
+            command(mesh=self.path('surface.obj'), density=self.path('densities.txt'),
+                    output=self.path('sphere.obj')),
+            env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+
+        def limit(size):
+            resource.prlimit(process.pid, resource.RLIMIT_AS, (size, resource.RLIM_INFINITY))
+
+        def has_worked():
+            with open('/proc/%d/stat' % process.pid) as stat:
+                fields = stat.read().rpartition(')')[2].split()
+            return sum(map(int, fields[11:13])) > seconds * os.sysconf('SC_CLK_TCK')
+
+        wait_until(has_worked)
+        with open('/proc/%d/statm' % process.pid) as statm:
+            limit(int(statm.read().split()[0]) * resource.getpagesize())
+        wait_until(lambda: os.path.exists(self.path('sphere.obj')) or process.poll() is not None)
+        if process.poll() is None:
+            limit(resource.RLIM_INFINITY)
+        process.stdout, process.stderr = process.communicate(timeout=4 * LONG)
+        return Outcome(process)
+
+    def test_the_best_map_so_far_is_written(self):
+        vertices, faces = bumpy(4)
+        self.write('surface.obj', vertices, faces)
+        densities = np.exp(np.random.default_rng(1).uniform(-3, 3, len(faces)))
+        np.savetxt(self.path('densities.txt'), densities)
+        for seconds in (1, 2, 4, 8):
+            outcome = self.limited_after(seconds)
+            if outcome.code == 0:
+                break
+            self.assertEqual('error: there is not enough memory', outcome.error)  # nor a map yet
+        self.assertEqual(0, outcome.code, outcome.error)
+        self.assertIn(self.SAID, outcome.error.splitlines())
+        self.assert_is_map(faces, mesh.areas(vertices, faces) * densities, outcome)
 
 
 class TestNode(MeshTest):
