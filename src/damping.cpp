@@ -5,8 +5,8 @@
 
 namespace spherical_springs::core {
 
-Damping::Damping(const Eigen::VectorXd& inverse_masses, const Eigen::VectorXd& viscous,
-                 std::vector<Damper> dampers, std::vector<std::uint32_t> end_particles)
+Damping::Damping(const Values& inverse_masses, const Values& viscous, std::vector<Damper> dampers,
+                 std::vector<std::uint32_t> end_particles)
     : inverse_masses_(inverse_masses),
       viscous_(viscous),
       viscous_any_((viscous.array() * inverse_masses.array() > 0).any()),
@@ -51,7 +51,7 @@ Damping::ViscousFlow Damping::viscousFlow(Eigen::Index particle, double duration
 }
 
 double Damping::fastestRate(const std::vector<Vector3>& gradients) const {
-  Eigen::VectorXd rows = viscous_.cwiseProduct(inverse_masses_);
+  Values rows = viscous_.cwiseProduct(inverse_masses_);
   for (const Damper& damper : dampers_) {
     const auto lever = [&](std::uint32_t end) {
       return gradients[end].norm() * std::sqrt(inverse_masses_[end_particles_[end]]);

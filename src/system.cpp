@@ -33,7 +33,7 @@ System::System(const Scene& scene, Options options) : options_(options) {
   const auto count = static_cast<Eigen::Index>(particles.size());
   masses_.resize(count);
   inverse_masses_.resize(count);
-  Eigen::VectorXd viscous(count);
+  Values viscous(count);
   particle_ids_ = particles.ids();
   layout_ = std::make_shared<LayoutOnDemand>();
   layout_->positions.resize(3, count);

@@ -1,7 +1,6 @@
 // Damping of particles and of springs, and its flow together with constant torques.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -24,8 +23,8 @@ class Damping {
   Damping() = default;
   /// `inverse_masses`: 0 where pinned. `viscous`: one coefficient a particle. `end_particles`: the
   /// particle of each end of a spring.
-  Damping(const Eigen::VectorXd& inverse_masses, const Eigen::VectorXd& viscous,
-          std::vector<Damper> dampers, std::vector<std::uint32_t> end_particles);
+  Damping(const Values& inverse_masses, const Values& viscous, std::vector<Damper> dampers,
+          std::vector<std::uint32_t> end_particles);
 
   bool none() const { return !viscous_any_ && dampers_.empty(); }
   bool hasViscous() const { return viscous_any_; }
@@ -69,7 +68,7 @@ class Damping {
   double dampEnds(const Damper& damper, const std::vector<Vector3>& gradients, double duration,
                   Points& velocities) const;
 
-  Eigen::VectorXd inverse_masses_, viscous_;
+  Values inverse_masses_, viscous_;
   bool viscous_any_ = false;
   std::vector<Damper> dampers_;
   std::vector<std::uint32_t> end_particles_;

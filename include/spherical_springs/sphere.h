@@ -6,10 +6,9 @@
 
 #include <Eigen/Geometry>
 
-namespace spherical_springs::core {
+#include "spherical_springs/matrices.h"
 
-using Vector3 = Eigen::Vector3d;
-using Points = Eigen::Matrix3Xd;  ///< one column a particle
+namespace spherical_springs::core {
 
 inline constexpr double kPi = 3.14159265358979323846;
 

@@ -1,7 +1,6 @@
 // The system compiled from a scene: arrays by kind, only the kinds present.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -42,8 +41,8 @@ class System {
   System(const Scene& scene, Options options);
 
   Eigen::Index particleCount() const { return masses_.size(); }
-  const Eigen::VectorXd& masses() const { return masses_; }
-  const Eigen::VectorXd& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
+  const Values& masses() const { return masses_; }
+  const Values& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
   /// Whether a spring ends at a particle.
   bool joined(Eigen::Index particle) const {
@@ -104,7 +103,7 @@ class System {
   void addDampers(const Spring& spring, std::vector<Damping::Damper>& dampers) const;
 
   Options options_;
-  Eigen::VectorXd masses_, inverse_masses_;
+  Values masses_, inverse_masses_;
   bool any_pinned_ = false;
   SpringLists springs_;
   std::vector<std::uint32_t> particle_ids_;

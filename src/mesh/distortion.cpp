@@ -18,8 +18,7 @@ double logRatio(double area, double share) {
   return std::log(std::max(std::abs(area), std::numeric_limits<double>::min()) / share);
 }
 
-void requireFittingSizes(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
-                         const Points& map) {
+void requireFittingSizes(const TriangleMesh& mesh, const ValuesRef& shares, const Points& map) {
   if (shares.size() != mesh.faces.cols()) {
     throw std::invalid_argument("there are " + std::to_string(shares.size()) + " shares for " +
                                 std::to_string(mesh.faces.cols()) + " faces");
@@ -32,11 +31,11 @@ void requireFittingSizes(const TriangleMesh& mesh, const Eigen::VectorXd& shares
 
 }  // namespace
 
-FaceDistortion faceDistortion(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
+FaceDistortion faceDistortion(const TriangleMesh& mesh, const ValuesRef& shares,
                               const Points& map) {
   requireFittingSizes(mesh, shares, map);
   const Eigen::Index count = mesh.faces.cols();
-  FaceDistortion result{Eigen::VectorXd(count), Eigen::VectorXd(count), Points(3, count)};
+  FaceDistortion result{Values(count), Values(count), Points(3, count)};
   for (Eigen::Index f = 0; f < count; ++f) {
     const auto angles = [&, face = mesh.faces.col(f)](const Points& places) {
       return cornerAngles(places.col(face[0]), places.col(face[1]), places.col(face[2]));

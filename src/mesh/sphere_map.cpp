@@ -23,7 +23,7 @@ std::string text(double value) {
 /// Three great circles cannot enclose half of the sphere, and come near to that only in a circle.
 constexpr double kLargestShare = 0.45;  // of the sphere
 
-void requireShares(const TriangleMesh& mesh, const Eigen::VectorXd& shares) {
+void requireShares(const TriangleMesh& mesh, const ValuesRef& shares) {
   if (shares.size() != mesh.faces.cols()) {
     throw std::invalid_argument("there are " + std::to_string(shares.size()) + " shares for " +
                                 std::to_string(mesh.faces.cols()) + " faces");
@@ -76,7 +76,7 @@ Points directions(const TriangleMesh& mesh, const Points& start) {
 
 }  // namespace
 
-Eigen::VectorXd faceShares(const Eigen::VectorXd& areas) {
+Values faceShares(const ValuesRef& areas) {
   constexpr double kLeast = 1e-6;  // of the mean
   double largest = 0;
   for (Eigen::Index f = 0; f < areas.size(); ++f) {
@@ -93,23 +93,24 @@ Eigen::VectorXd faceShares(const Eigen::VectorXd& areas) {
   return shares * (4 * core::kPi / shares.sum());
 }
 
-Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
-                 const MapOptions& options) {
+Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const MapOptions& options) {
   requireTopologicalSphere(mesh);
   requireShares(mesh, shares);
   requireOptions(options);
-  return Mapping(mesh.faces, shares, static_cast<std::int32_t>(mesh.vertices.cols()), options)
+  const Eigen::VectorXd wanted = shares;
+  return Mapping(mesh.faces, wanted, static_cast<std::int32_t>(mesh.vertices.cols()), options)
       .run({});
 }
 
-Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
+Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const Points& start,
                  const MapOptions& options) {
   requireTopologicalSphere(mesh);
   requireShares(mesh, shares);
   requireOptions(options);
   Points own = directions(mesh, start);
   if (!coversOnce(mesh.faces, own)) return sphereMap(mesh, shares, options);
-  return Mapping(mesh.faces, shares, static_cast<std::int32_t>(mesh.vertices.cols()), options)
+  const Eigen::VectorXd wanted = shares;
+  return Mapping(mesh.faces, wanted, static_cast<std::int32_t>(mesh.vertices.cols()), options)
       .run(std::move(own));
 }
 

@@ -2,8 +2,8 @@
 
 namespace spherical_springs::mesh {
 
-Eigen::VectorXd faceAreas(const TriangleMesh& mesh) {
-  Eigen::VectorXd areas(mesh.faces.cols());
+Values faceAreas(const TriangleMesh& mesh) {
+  Values areas(mesh.faces.cols());
   for (Eigen::Index f = 0; f < areas.size(); ++f) {
     const Vector3 a = mesh.vertices.col(mesh.faces(0, f));
     const Vector3 ab = mesh.vertices.col(mesh.faces(1, f)) - a;

@@ -12,8 +12,9 @@
 
 namespace spherical_springs::core {
 
-/// A point of the sphere and the frame of its tangent plane.
-struct TangentPlace {
+/// A point of the sphere and the frame of its tangent plane, padded to the size that the kernels of
+/// Hessians take.
+struct alignas(2 * sizeof(double)) TangentPlace {
   TangentFrame frame;
   Vector3 point;
 };

@@ -9,10 +9,9 @@
 
 namespace spherical_springs::mesh {
 
-Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces,
-                              const core::Checkpoint& checkpoint) {
+Values readDensities(std::istream& in, Eigen::Index faces, const core::Checkpoint& checkpoint) {
   const core::Range allowed{0, std::numeric_limits<double>::max(), "a positive number", true};
-  Eigen::VectorXd densities(faces);
+  Values densities(faces);
   Eigen::Index count = 0;
   for (std::string text; in >> text; ++count) {
     checkpoint();
@@ -31,7 +30,7 @@ Eigen::VectorXd readDensities(std::istream& in, Eigen::Index faces,
   return densities;
 }
 
-void writeMetrics(std::ostream& out, const Eigen::VectorXd& shares, const FaceDistortion& faces,
+void writeMetrics(std::ostream& out, const ValuesRef& shares, const FaceDistortion& faces,
                   const core::Checkpoint& checkpoint) {
   out << "face,share_sr,area_sr,log_area_ratio,angle_change_1_rad,angle_change_2_rad,"
          "angle_change_3_rad\n"

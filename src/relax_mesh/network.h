@@ -12,6 +12,7 @@
 namespace spherical_springs::relax_mesh {
 
 using core::Points;
+using core::Values;
 
 using Ids = std::vector<std::uint32_t>;
 
@@ -20,8 +21,8 @@ using Ids = std::vector<std::uint32_t>;
 struct Network {
   const Points& start;  ///< one unit vector a vertex
   const mesh::Faces& faces;
-  const Eigen::VectorXd& rests;  ///< one a face [sr]
-  double arc_weight;             ///< of the angle springs beside the others, above 0
+  const Values& rests;  ///< one a face [sr]
+  double arc_weight;    ///< of the angle springs beside the others, above 0
 };
 
 /// The springs that a network on a closed surface of so many faces has.

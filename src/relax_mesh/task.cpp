@@ -21,9 +21,9 @@ mesh::TriangleMesh readSurface(const fs::path& path) {
   return surface;
 }
 
-Eigen::VectorXd readShares(const Options& options, const mesh::TriangleMesh& surface) {
-  const Eigen::VectorXd areas = mesh::faceAreas(surface);
-  Eigen::VectorXd shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
+Values readShares(const Options& options, const mesh::TriangleMesh& surface) {
+  const Values areas = mesh::faceAreas(surface);
+  Values shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
   if (options.density.empty()) return shares;
   std::ifstream in = core::openToRead(options.density);
   return about(options.density, [&] {

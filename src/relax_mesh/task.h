@@ -12,10 +12,11 @@
 namespace spherical_springs::relax_mesh {
 
 using core::Points;
+using core::Values;
 
 struct Task {
   mesh::TriangleMesh surface;
-  Eigen::VectorXd shares;             ///< of the sphere, one a face, summing to 4 pi [sr]
+  Values shares;                      ///< of the sphere, one a face, summing to 4 pi [sr]
   std::filesystem::path shares_from;  ///< the file that has the last word on them
   std::optional<Points> start;        ///< one unit vector a vertex
   bool inside_out = false;            ///< whether the surface's faces look inwards

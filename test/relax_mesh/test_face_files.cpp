@@ -36,7 +36,9 @@ TEST(Densities, AreRefusedUnlessPositiveAndOneAFace) {
 }
 
 TEST(Metrics, AreWrittenFaceByFace) {
-  FaceDistortion faces{Eigen::Vector2d(0.25, -3), Eigen::Vector2d(0.5, 1), Points(3, 2)};
+  FaceDistortion faces{Values(2), Values(2), Points(3, 2)};
+  faces.areas << 0.25, -3;
+  faces.log_area_ratios << 0.5, 1;
   faces.angle_changes << 1, 4, 2, 5, 3, -6;
   std::ostringstream out;
   writeMetrics(out, Eigen::Vector2d(1, 2), faces);

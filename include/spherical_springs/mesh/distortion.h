@@ -7,9 +7,9 @@ namespace spherical_springs::mesh {
 
 /// One entry, or one column, a face.
 struct FaceDistortion {
-  Eigen::VectorXd areas;            ///< on the sphere, negative where the face is folded over [sr]
-  Eigen::VectorXd log_area_ratios;  ///< log(|area| / share), finite
-  Points angle_changes;  ///< corner angles, flat, on the sphere minus those on the surface [rad]
+  Values areas;            ///< on the sphere, negative where the face is folded over [sr]
+  Values log_area_ratios;  ///< log(|area| / share), finite
+  Points angle_changes;    ///< corner angles, flat, on the sphere minus those on the surface [rad]
 };
 
 /// Of a map, one unit vector a vertex, that wants `shares` [sr] for its faces: one a face,
@@ -17,8 +17,7 @@ struct FaceDistortion {
 /// sides, as in the literature on conformal maps (Choi, Lam, Lui 2015, doi:10.1137/130950008). A
 /// triangle with two vertices on one spot has an angle of 0 there.
 /// @throw std::invalid_argument where the sizes do not fit.
-FaceDistortion faceDistortion(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
-                              const Points& map);
+FaceDistortion faceDistortion(const TriangleMesh& mesh, const ValuesRef& shares, const Points& map);
 
 /// What is said of a map in one line.
 struct Distortion {

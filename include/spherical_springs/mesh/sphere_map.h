@@ -11,7 +11,7 @@ namespace spherical_springs::mesh {
 /// Each face's share of the sphere [sr], in proportion to `areas` (one a face: its own, or that
 /// times a density), summing to 4 pi. Shares below a millionth of the mean are raised to that.
 /// @throw std::invalid_argument for an area that is negative or not finite, or where all are 0.
-Eigen::VectorXd faceShares(const Eigen::VectorXd& areas);
+Values faceShares(const ValuesRef& areas);
 
 /// That no map without folds was found, from any start.
 class NoMap : public std::runtime_error {
@@ -39,14 +39,13 @@ struct MapOptions {
 /// the mesh and whose faces cover the sphere once, with areas as near to `shares` as can be found.
 /// @throw std::invalid_argument where `requireTopologicalSphere` does, or for shares that are not
 /// one a face, positive and at most 45 % of the sphere, or for options outside their range; NoMap.
-Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
-                 const MapOptions& options = {});
+Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const MapOptions& options = {});
 
 /// The same from a start, one vector a vertex, whose directions count. A start that is folded, or
 /// covers the sphere more than once, is passed over.
 /// @throw std::invalid_argument also for a start of another size, or with a vector that is zero or
 /// not finite.
-Points sphereMap(const TriangleMesh& mesh, const Eigen::VectorXd& shares, const Points& start,
+Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const Points& start,
                  const MapOptions& options = {});
 
 }  // namespace spherical_springs::mesh

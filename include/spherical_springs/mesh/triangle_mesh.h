@@ -1,7 +1,6 @@
 // Triangle meshes.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 
 #include "spherical_springs/sphere.h"
@@ -9,10 +8,12 @@
 namespace spherical_springs::mesh {
 
 using core::Points;
+using core::Values;
+using core::ValuesRef;
 using core::Vector3;
 
 /// One column a face: the indices of its vertices, counter-clockwise seen from outside.
-using Faces = Eigen::Matrix<std::int32_t, 3, Eigen::Dynamic>;
+using Faces = core::Unaligned<std::int32_t, 3, Eigen::Dynamic>;
 
 struct TriangleMesh {
   Points vertices;  ///< [m]
@@ -20,7 +21,7 @@ struct TriangleMesh {
 };
 
 /// One a face [m^2].
-Eigen::VectorXd faceAreas(const TriangleMesh& mesh);
+Values faceAreas(const TriangleMesh& mesh);
 
 /// Of a closed mesh, negative where its faces look inwards [m^3].
 double volume(const TriangleMesh& mesh);

@@ -1,7 +1,6 @@
 // What every kind of spring answers: the condition it wants to be zero, and its derivatives.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -20,7 +19,7 @@ struct Condition {
 };
 
 /// Two unit vectors that make a right-handed frame with a point: columns x and y = p x x.
-using TangentFrame = Eigen::Matrix<double, 3, 2>;
+using TangentFrame = Unaligned<double, 3, 2>;
 
 /// The frame at `p` whose x is `perpendicular(p)`.
 inline TangentFrame tangentFrame(const Vector3& p) {
@@ -48,8 +47,8 @@ constexpr double leastCurvature(Curvature curvature) {
 template <std::size_t N>
 struct TangentCondition {
   double value;
-  std::array<Eigen::Vector2d, N> gradient;
-  std::array<std::array<Eigen::Matrix2d, N>, N> hessian;
+  std::array<Vector2, N> gradient;
+  std::array<std::array<Matrix2, N>, N> hessian;
 };
 
 }  // namespace spherical_springs::core
