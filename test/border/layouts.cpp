@@ -1,0 +1,7 @@
+#include "layouts.h"
+
+namespace spherical_springs {
+
+const TypeLayout* layoutsOfLibrary() { return kLayouts; }
+
+}  // namespace spherical_springs
