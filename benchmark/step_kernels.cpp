@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/step_levels.h"
+#include "support/step_levels.h"
 
 namespace {
 

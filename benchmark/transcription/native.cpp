@@ -1,4 +1,4 @@
-#include "native.h"
+#include "transcription/native.h"
 
 namespace report {
 

@@ -1,7 +1,7 @@
 // The report transcribed, compiled for this machine's processor.
 #pragma once
 
-#include "report.h"
+#include "transcription/report.h"
 
 namespace report {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "answer.h"
-#include "request_stream.h"
-#include "surviving.h"
+#include "node/answer.h"
+#include "node/request_stream.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 

@@ -1,10 +1,10 @@
-#include "callback_threads.h"
+#include "node/callback_threads.h"
 
 #include <boost/make_shared.hpp>
 #include <csignal>
 #include <utility>
 
-#include "surviving.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 namespace {

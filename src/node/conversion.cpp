@@ -1,4 +1,4 @@
-#include "conversion.h"
+#include "node/conversion.h"
 
 #include <algorithm>
 #include <cmath>

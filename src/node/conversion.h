@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "spherical_springs/measures.h"
-#include "spherical_springs/runner.h"
+#include "simulation/runner.h"
 #include "spherical_springs/scene.h"
 
 namespace spherical_springs {

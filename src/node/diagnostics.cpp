@@ -1,4 +1,4 @@
-#include "diagnostics.h"
+#include "node/diagnostics.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "news.h"
+#include "node/news.h"
 
 namespace spherical_springs {
 

@@ -1,4 +1,4 @@
-#include "handlers.h"
+#include "node/handlers.h"
 
 #include <charconv>
 #include <chrono>
@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "conversion.h"
+#include "node/conversion.h"
 #include "spherical_springs/range.h"
-#include "surviving.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 namespace {

@@ -17,10 +17,10 @@
 
 #include <string>
 
-#include "answer.h"
-#include "news.h"
-#include "scene_directory.h"
-#include "spherical_springs/runner.h"
+#include "node/answer.h"
+#include "node/news.h"
+#include "node/scene_directory.h"
+#include "simulation/runner.h"
 
 namespace spherical_springs {
 

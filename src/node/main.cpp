@@ -5,20 +5,20 @@
 #include <csignal>
 #include <stdexcept>
 
-#include "callback_threads.h"
-#include "handlers.h"
-#include "marker_publisher.h"
-#include "news.h"
-#include "parameters.h"
-#include "publisher.h"
-#include "request_memory.h"
-#include "scene_directory.h"
-#include "services.h"
+#include "node/callback_threads.h"
+#include "node/handlers.h"
+#include "node/marker_publisher.h"
+#include "node/news.h"
+#include "node/parameters.h"
+#include "node/publisher.h"
+#include "node/request_memory.h"
+#include "node/scene_directory.h"
+#include "node/services.h"
 #include "spherical_springs/range.h"
-#include "spherical_springs/runner.h"
+#include "simulation/runner.h"
 #include "spherical_springs/scene_file.h"
-#include "stepper.h"
-#include "surviving.h"
+#include "node/stepper.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 namespace {

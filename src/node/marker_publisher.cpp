@@ -1,12 +1,12 @@
-#include "marker_publisher.h"
+#include "node/marker_publisher.h"
 
 #include <ros/serialization.h>
 #include <ros/single_subscriber_publisher.h>
 
 #include <utility>
 
-#include "markers.h"
-#include "surviving.h"
+#include "node/markers.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 

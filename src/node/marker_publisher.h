@@ -11,9 +11,9 @@
 #include <mutex>
 #include <vector>
 
-#include "parameters.h"
-#include "rest.h"
-#include "spherical_springs/runner.h"
+#include "node/parameters.h"
+#include "node/rest.h"
+#include "simulation/runner.h"
 
 namespace spherical_springs {
 

@@ -1,4 +1,4 @@
-#include "markers.h"
+#include "node/markers.h"
 
 #include <geometry_msgs/Point.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "spherical_springs/springs/strain.h"
-#include "spherical_springs/tessellation.h"
+#include "springs/strain.h"
+#include "geometry/tessellation.h"
 
 namespace spherical_springs {
 namespace {

@@ -1,4 +1,4 @@
-#include "news.h"
+#include "node/news.h"
 
 namespace spherical_springs {
 namespace {

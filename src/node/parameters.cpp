@@ -1,9 +1,9 @@
-#include "parameters.h"
+#include "node/parameters.h"
 
 #include <sstream>
 #include <stdexcept>
 
-#include "../available_threads.h"
+#include "base/available_threads.h"
 
 namespace spherical_springs {
 namespace {

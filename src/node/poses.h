@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "conversion.h"
+#include "node/conversion.h"
 
 namespace spherical_springs {
 

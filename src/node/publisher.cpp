@@ -1,11 +1,11 @@
-#include "publisher.h"
+#include "node/publisher.h"
 
 #include <algorithm>
 
-#include "conversion.h"
-#include "poses.h"
+#include "node/conversion.h"
+#include "node/poses.h"
 #include "spherical_springs/measures.h"
-#include "surviving.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 namespace {

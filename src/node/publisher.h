@@ -10,13 +10,13 @@
 #include <chrono>
 #include <string>
 
-#include "diagnostics.h"
-#include "lag.h"
-#include "news.h"
-#include "parameters.h"
-#include "rest.h"
-#include "spherical_springs/runner.h"
-#include "stepped_time.h"
+#include "node/diagnostics.h"
+#include "node/lag.h"
+#include "node/news.h"
+#include "node/parameters.h"
+#include "node/rest.h"
+#include "simulation/runner.h"
+#include "node/stepped_time.h"
 
 namespace spherical_springs {
 

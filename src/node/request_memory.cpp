@@ -1,4 +1,4 @@
-#include "request_memory.h"
+#include "node/request_memory.h"
 
 #include <ros/poll_manager.h>
 

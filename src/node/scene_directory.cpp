@@ -1,10 +1,10 @@
-#include "scene_directory.h"
+#include "node/scene_directory.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
-#include "../files.h"
+#include "base/files.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {

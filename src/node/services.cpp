@@ -1,6 +1,6 @@
-#include "services.h"
+#include "node/services.h"
 
-#include "answering_service.h"
+#include "node/answering_service.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "handlers.h"
-#include "news.h"
+#include "node/handlers.h"
+#include "node/news.h"
 
 namespace spherical_springs {
 

@@ -1,9 +1,9 @@
-#include "stepper.h"
+#include "node/stepper.h"
 
 #include <algorithm>
 
-#include "elapsed.h"
-#include "surviving.h"
+#include "node/elapsed.h"
+#include "node/surviving.h"
 
 namespace spherical_springs {
 namespace {

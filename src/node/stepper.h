@@ -8,9 +8,9 @@
 #include <mutex>
 #include <thread>
 
-#include "pacer.h"
-#include "parameters.h"
-#include "spherical_springs/runner.h"
+#include "node/pacer.h"
+#include "node/parameters.h"
+#include "simulation/runner.h"
 
 namespace spherical_springs {
 

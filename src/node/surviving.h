@@ -8,7 +8,7 @@
 #include <new>
 #include <system_error>
 
-#include "throttle.h"
+#include "node/throttle.h"
 
 namespace spherical_springs {
 

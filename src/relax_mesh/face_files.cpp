@@ -1,4 +1,4 @@
-#include "face_files.h"
+#include "relax_mesh/face_files.h"
 
 #include <iomanip>
 #include <limits>

@@ -4,8 +4,8 @@
 #include <istream>
 #include <ostream>
 
-#include "../checkpoint.h"
-#include "spherical_springs/mesh/distortion.h"
+#include "base/checkpoint.h"
+#include "spherical_springs/maps/distortion.h"
 
 namespace spherical_springs::mesh {
 

@@ -1,4 +1,4 @@
-#include "interruption.h"
+#include "relax_mesh/interruption.h"
 
 #include <atomic>
 #include <csignal>

@@ -10,16 +10,16 @@
 #include <stdexcept>
 #include <string>
 
-#include "../available_threads.h"
-#include "../files.h"
-#include "interruption.h"
-#include "output_files.h"
-#include "progress_line.h"
-#include "spherical_springs/mesh/distortion.h"
-#include "spherical_springs/mesh/sphere_map.h"
+#include "base/available_threads.h"
+#include "base/files.h"
+#include "relax_mesh/interruption.h"
+#include "relax_mesh/output_files.h"
+#include "relax_mesh/progress_line.h"
+#include "spherical_springs/maps/distortion.h"
+#include "spherical_springs/maps/sphere_map.h"
 #include "spherical_springs/range.h"
-#include "springs_node.h"
-#include "task.h"
+#include "relax_mesh/springs_node.h"
+#include "relax_mesh/task.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {

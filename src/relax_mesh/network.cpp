@@ -1,4 +1,4 @@
-#include "network.h"
+#include "relax_mesh/network.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "spherical_springs/mesh/triangle_mesh.h"
+#include "spherical_springs/maps/triangle_mesh.h"
 
 namespace spherical_springs::relax_mesh {
 

@@ -1,4 +1,4 @@
-#include "obj_file.h"
+#include "relax_mesh/obj_file.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "../files.h"
+#include "base/files.h"
 
 // A reader of our own: doc/history/obj_readers.md says what libraries do with files at fault.
 

@@ -5,9 +5,9 @@
 #include <istream>
 #include <ostream>
 
-#include "../checkpoint.h"
-#include "spherical_springs/mesh/triangle_mesh.h"
-#include "texture_coordinates.h"
+#include "base/checkpoint.h"
+#include "spherical_springs/maps/triangle_mesh.h"
+#include "relax_mesh/texture_coordinates.h"
 
 namespace spherical_springs::mesh {
 

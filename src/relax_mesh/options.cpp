@@ -1,4 +1,4 @@
-#include "options.h"
+#include "relax_mesh/options.h"
 
 #include <algorithm>
 #include <boost/lexical_cast/try_lexical_convert.hpp>
@@ -6,7 +6,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "../files.h"
+#include "base/files.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {

@@ -1,4 +1,4 @@
-#include "output_files.h"
+#include "relax_mesh/output_files.h"
 
 #include <filesystem>
 #include <functional>
@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "../files.h"
-#include "face_files.h"
-#include "interruption.h"
-#include "obj_file.h"
-#include "texture_coordinates.h"
+#include "base/files.h"
+#include "relax_mesh/face_files.h"
+#include "relax_mesh/interruption.h"
+#include "relax_mesh/obj_file.h"
+#include "relax_mesh/texture_coordinates.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 
-#include "options.h"
-#include "spherical_springs/mesh/distortion.h"
-#include "spherical_springs/mesh/triangle_mesh.h"
-#include "task.h"
+#include "relax_mesh/options.h"
+#include "spherical_springs/maps/distortion.h"
+#include "spherical_springs/maps/triangle_mesh.h"
+#include "relax_mesh/task.h"
 
 namespace spherical_springs::relax_mesh {
 

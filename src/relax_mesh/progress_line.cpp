@@ -1,4 +1,4 @@
-#include "progress_line.h"
+#include "relax_mesh/progress_line.h"
 
 #include <unistd.h>
 

@@ -1,10 +1,10 @@
-#include "service_call.h"
+#include "relax_mesh/service_call.h"
 
 #include <algorithm>
 #include <chrono>
 #include <future>
 
-#include "interruption.h"
+#include "relax_mesh/interruption.h"
 
 namespace spherical_springs::relax_mesh {
 

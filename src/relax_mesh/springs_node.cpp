@@ -1,4 +1,4 @@
-#include "springs_node.h"
+#include "relax_mesh/springs_node.h"
 
 #include <ros/callback_queue.h>
 #include <ros/master.h>
@@ -16,9 +16,9 @@
 #include <iostream>
 #include <iterator>
 
-#include "interruption.h"
-#include "progress_line.h"
-#include "service_call.h"
+#include "relax_mesh/interruption.h"
+#include "relax_mesh/progress_line.h"
+#include "relax_mesh/service_call.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "network.h"
+#include "relax_mesh/network.h"
 
 namespace spherical_springs::relax_mesh {
 

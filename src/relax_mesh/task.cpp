@@ -1,14 +1,14 @@
-#include "task.h"
+#include "relax_mesh/task.h"
 
 #include <stdexcept>
 #include <string>
 
-#include "../files.h"
-#include "face_files.h"
-#include "interruption.h"
-#include "obj_file.h"
-#include "spherical_springs/mesh/sphere_map.h"
-#include "spherical_springs/mesh/topological_sphere.h"
+#include "base/files.h"
+#include "relax_mesh/face_files.h"
+#include "relax_mesh/interruption.h"
+#include "relax_mesh/obj_file.h"
+#include "spherical_springs/maps/sphere_map.h"
+#include "maps/topological_sphere.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {

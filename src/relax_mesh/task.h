@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "options.h"
-#include "spherical_springs/mesh/triangle_mesh.h"
+#include "relax_mesh/options.h"
+#include "spherical_springs/maps/triangle_mesh.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {

@@ -1,4 +1,4 @@
-#include "texture_coordinates.h"
+#include "relax_mesh/texture_coordinates.h"
 
 #include <cmath>
 #include <vector>

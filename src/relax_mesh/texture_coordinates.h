@@ -1,7 +1,7 @@
 // A sphere's longitudes and latitudes as texture coordinates.
 #pragma once
 
-#include "spherical_springs/mesh/triangle_mesh.h"
+#include "spherical_springs/maps/triangle_mesh.h"
 
 namespace spherical_springs::mesh {
 

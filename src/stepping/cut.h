@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "../buckets.h"
-#include "elements.h"
+#include "base/buckets.h"
+#include "stepping/elements.h"
 
 namespace spherical_springs::core {
 

@@ -1,12 +1,12 @@
-#include "damped_kick.h"
+#include "stepping/damped_kick.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
 
-#include "../parallel.h"
-#include "exact_springs.h"
+#include "base/parallel.h"
+#include "stepping/exact_springs.h"
 
 namespace spherical_springs::core {
 

@@ -6,13 +6,13 @@
 #include <memory>
 #include <vector>
 
-#include "../kernels/step_kernels.h"
-#include "damper_layout.h"
-#include "damper_sweep.h"
-#include "layout.h"
-#include "scratch.h"
+#include "stepping/step_kernels.h"
+#include "stepping/damper_layout.h"
+#include "stepping/damper_sweep.h"
+#include "stepping/layout.h"
+#include "stepping/scratch.h"
 #include "spherical_springs/system.h"
-#include "viscous_flows.h"
+#include "stepping/viscous_flows.h"
 
 namespace spherical_springs::core {
 

@@ -1,11 +1,11 @@
-#include "damper_layout.h"
+#include "stepping/damper_layout.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "cut.h"
-#include "elements.h"
+#include "stepping/cut.h"
+#include "stepping/elements.h"
 
 namespace spherical_springs::core {
 

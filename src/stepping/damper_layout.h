@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "../kernels/damping_kernels.h"
-#include "groups.h"
-#include "layout.h"
+#include "stepping/damping_kernels.h"
+#include "stepping/groups.h"
+#include "stepping/layout.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {

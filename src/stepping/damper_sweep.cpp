@@ -1,4 +1,4 @@
-#include "damper_sweep.h"
+#include "stepping/damper_sweep.h"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "damper_layout.h"
+#include "stepping/damper_layout.h"
 
 namespace spherical_springs::core {
 

@@ -1,10 +1,10 @@
-#include "elements.h"
+#include "stepping/elements.h"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
-#include "../buckets.h"
+#include "base/buckets.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -1,12 +1,12 @@
-#include "evaluation.h"
+#include "stepping/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "../parallel.h"
-#include "exact_springs.h"
-#include "forces.h"
+#include "base/parallel.h"
+#include "stepping/exact_springs.h"
+#include "stepping/forces.h"
 
 namespace spherical_springs::core {
 

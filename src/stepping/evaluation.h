@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "../kernels/step_kernels.h"
-#include "layout.h"
-#include "scratch.h"
+#include "stepping/step_kernels.h"
+#include "stepping/layout.h"
+#include "stepping/scratch.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "../kernels/step_kernels.h"
+#include "stepping/step_kernels.h"
 #include "spherical_springs/springs/kinds.h"
 
 namespace spherical_springs::core {

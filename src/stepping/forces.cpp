@@ -1,8 +1,8 @@
-#include "forces.h"
+#include "stepping/forces.h"
 
 #include <tuple>
 
-#include "exact_springs.h"
+#include "stepping/exact_springs.h"
 
 namespace spherical_springs::core {
 

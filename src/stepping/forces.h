@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "../kernels/step_kernels.h"
-#include "layout.h"
-#include "scratch.h"
+#include "stepping/step_kernels.h"
+#include "stepping/layout.h"
+#include "stepping/scratch.h"
 
 namespace spherical_springs::core {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../kernels/row.h"
+#include "stepping/row.h"
 
 namespace spherical_springs::core {
 

@@ -1,11 +1,11 @@
-#include "layout.h"
+#include "stepping/layout.h"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
-#include "../curve_order.h"
-#include "cut.h"
+#include "geometry/curve_order.h"
+#include "stepping/cut.h"
 
 namespace spherical_springs::core {
 

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "../kernels/step_kernels.h"
-#include "elements.h"
-#include "groups.h"
+#include "stepping/step_kernels.h"
+#include "stepping/elements.h"
+#include "stepping/groups.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {

@@ -1,8 +1,8 @@
-#include "motion.h"
+#include "stepping/motion.h"
 
 #include <utility>
 
-#include "../parallel.h"
+#include "base/parallel.h"
 
 namespace spherical_springs::core {
 

@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "../kernels/step_kernels.h"
-#include "damped_kick.h"
-#include "forces.h"
-#include "layout.h"
+#include "stepping/step_kernels.h"
+#include "stepping/damped_kick.h"
+#include "stepping/forces.h"
+#include "stepping/layout.h"
 #include "spherical_springs/state.h"
 #include "spherical_springs/system.h"
-#include "viscous_flows.h"
+#include "stepping/viscous_flows.h"
 
 namespace spherical_springs::core {
 

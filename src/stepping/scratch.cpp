@@ -1,4 +1,4 @@
-#include "scratch.h"
+#include "stepping/scratch.h"
 
 #include <algorithm>
 #include <thread>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "layout.h"
+#include "stepping/layout.h"
 
 namespace spherical_springs::core {
 

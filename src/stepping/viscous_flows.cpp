@@ -1,4 +1,4 @@
-#include "viscous_flows.h"
+#include "stepping/viscous_flows.h"
 
 #include <algorithm>
 #include <utility>

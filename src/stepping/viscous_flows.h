@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "layout.h"
+#include "stepping/layout.h"
 #include "spherical_springs/damping.h"
 
 namespace spherical_springs::core {

@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "layouts.h"
-#include "spherical_springs/mesh/topological_sphere.h"
-#include "spherical_springs/springs/strain.h"
-#include "spherical_springs/tessellation.h"
+#include "maps/topological_sphere.h"
+#include "springs/strain.h"
+#include "geometry/tessellation.h"
 
 namespace spherical_springs {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "relax_mesh/obj_file.h"
 #include "soundness.h"
-#include "spherical_springs/mesh/distortion.h"
-#include "spherical_springs/mesh/sphere_map.h"
-#include "spherical_springs/mesh/topological_sphere.h"
+#include "spherical_springs/maps/distortion.h"
+#include "spherical_springs/maps/sphere_map.h"
+#include "maps/topological_sphere.h"
 
 using namespace spherical_springs;  // NOLINT: a program, not a header
 using core::fuzzing::require;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/scenes.h"
+#include "support/scenes.h"
 #include "node/markers.h"
 
 namespace spherical_springs {

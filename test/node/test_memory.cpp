@@ -8,7 +8,7 @@
 #include <memory>
 #include <sstream>
 
-#include "core/scenes.h"
+#include "support/scenes.h"
 #include "failing_malloc.h"
 #include "node/answering_service.h"
 #include "node/conversion.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/mesh_scenes.h"
+#include "support/mesh_scenes.h"
 #include "relax_mesh/obj_file.h"
 
 namespace spherical_springs::mesh {

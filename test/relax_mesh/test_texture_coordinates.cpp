@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/mesh_scenes.h"
+#include "support/mesh_scenes.h"
 #include "relax_mesh/texture_coordinates.h"
 
 namespace spherical_springs::mesh {

@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "spherical_springs/springs/angle_spring.h"
-#include "spherical_springs/springs/oriented_angle_spring.h"
-#include "spherical_springs/springs/solid_angle_spring.h"
+#include "spherical_springs/springs/angle.h"
+#include "spherical_springs/springs/oriented_angle.h"
+#include "spherical_springs/springs/solid_angle.h"
 
 namespace spherical_springs::core {
 

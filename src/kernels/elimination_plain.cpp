@@ -1,9 +1,0 @@
-// Compiled for every processor.
-#include "elimination.h"
-
-namespace spherical_springs::core {
-
-extern const EliminationKernels kPlainEliminationKernels;
-const EliminationKernels kPlainEliminationKernels = kKernels;
-
-}  // namespace spherical_springs::core

@@ -1,9 +1,0 @@
-// Compiled for processors with AVX2 and FMA.
-#include "hessian_lanes.h"
-
-namespace spherical_springs::core {
-
-extern const HessianKernels kAvx2HessianKernels;
-const HessianKernels kAvx2HessianKernels = kKernels;
-
-}  // namespace spherical_springs::core

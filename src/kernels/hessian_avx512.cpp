@@ -1,9 +1,0 @@
-// Compiled for processors with AVX-512.
-#include "hessian_lanes.h"
-
-namespace spherical_springs::core {
-
-extern const HessianKernels kAvx512HessianKernels;
-const HessianKernels kAvx512HessianKernels = kKernels;
-
-}  // namespace spherical_springs::core

@@ -1,9 +1,0 @@
-// For any processor.
-#include "hessian_lanes.h"
-
-namespace spherical_springs::core {
-
-extern const HessianKernels kPlainHessianKernels;
-const HessianKernels kPlainHessianKernels = kKernels;
-
-}  // namespace spherical_springs::core

@@ -1,9 +1,0 @@
-// For any processor.
-#include "motion_lanes.h"
-
-namespace spherical_springs::core {
-
-extern const StepKernels kPlainStepKernels;
-const StepKernels kPlainStepKernels = kKernels;
-
-}  // namespace spherical_springs::core

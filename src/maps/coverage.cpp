@@ -1,0 +1,25 @@
+#include "maps/coverage.h"
+
+#include <cmath>
+
+namespace spherical_springs::mesh {
+
+bool surelyPositive(const Vector3& a, const Vector3& b, const Vector3& c) {
+  // Of differences of unit vectors, of their products, and of the points as rays from the centre.
+  constexpr double kRounding = 3e-15;
+  const double edges = (b - a).norm() * (c - a).norm();
+  return core::tripleProduct(a, b, c) > kRounding * edges;
+}
+
+bool coversOnce(const Faces& faces, const Points& points) {
+  double sum = 0;
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    const Vector3 a = points.col(faces(0, f)), b = points.col(faces(1, f)),
+                  c = points.col(faces(2, f));
+    if (!surelyPositive(a, b, c)) return false;
+    sum += core::solidAngle(a, b, c);
+  }
+  return std::abs(sum - 4 * core::kPi) < 1;
+}
+
+}  // namespace spherical_springs::mesh

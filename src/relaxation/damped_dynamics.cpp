@@ -1,0 +1,87 @@
+#include "relaxation/damped_dynamics.h"
+
+#include <algorithm>
+
+#include "stepping/evaluation.h"
+
+namespace spherical_springs::core {
+namespace {
+
+constexpr IntegrationMethod kMethod = IntegrationMethod::verlet;
+
+}  // namespace
+
+DampedDynamics::DampedDynamics(const System& system, OrientationGuard* guard,
+                               const TorqueLimit& limit)
+    : system_(std::shared_ptr<const System>(), &system), guard_(guard), limit_(limit) {}
+
+void DampedDynamics::place(const Points& positions) {
+  state_ = {};
+  state_.positions = positions;
+  allowed_ = allowedTorques(*system_, positions, limit_);
+  stop();
+  measure();
+  least_excess_ = excess_;
+  least_excess_step_ = 0;
+}
+
+void DampedDynamics::stop() {
+  state_.angular_velocities.setZero(3, state_.positions.cols());
+  kinetic_ = 0;
+}
+
+void DampedDynamics::measure() {
+  value_ = system_->potential(state_.positions).total();
+  const Evaluation here(*system_, state_.positions);
+  auto largest = here.largestTorque(allowed_);
+  if (largest.excess <= 1 && limit_.isRelative()) {
+    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+    largest = here.largestTorque(allowed_);
+  }
+  max_torque_ = largest.torque;
+  excess_ = largest.excess;
+}
+
+void DampedDynamics::chooseTimeStep() {
+  constexpr double kShareOfStable = 0.5;
+  constexpr double kLongest = 1e6;  // where nothing swings [s]
+  const double stable = stableTimeStep(*system_, kMethod, state_.positions);
+  integrator_ = makeIntegrator(system_, kMethod, std::min(kShareOfStable * stable, kLongest));
+}
+
+/// Cuts the last step, from `from`, to what the guard allows.
+void DampedDynamics::keepOrientation(const Points& from) {
+  const Points moves = state_.positions - from;
+  Eigen::VectorXd hold = Eigen::VectorXd::Zero(from.cols());
+  const double share = guard_->allowedShare(from, moves, hold);
+  if (share == 1) return;
+  state_.positions = (from + share * moves).colwise().normalized();
+  stop();
+}
+
+bool DampedDynamics::iterate() {
+  constexpr std::uint64_t kStepLasts = 50;
+  constexpr std::uint64_t kPatience = 20000;  // steps without a smaller excess
+  if (state_.steps % kStepLasts == 0) {
+    chooseTimeStep();
+    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+  }
+  const Points from = state_.positions;
+  integrator_->step(state_);
+  const double kinetic = system_->kinetic(state_.angular_velocities);
+  if (kinetic < kinetic_) {
+    state_.positions = from;
+    stop();
+  } else {
+    kinetic_ = kinetic;
+    if (guard_) keepOrientation(from);
+  }
+  measure();
+  if (excess_ < least_excess_) {
+    least_excess_ = excess_;
+    least_excess_step_ = state_.steps;
+  }
+  return state_.steps - least_excess_step_ < kPatience;
+}
+
+}  // namespace spherical_springs::core

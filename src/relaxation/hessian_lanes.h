@@ -1,0 +1,253 @@
+// The kernels of hessian_kernels.h, for whatever level of instruction set a file that includes this
+// is compiled for. The formulas are those of src/springs, for angles that are not large.
+#pragma once
+
+#include "relaxation/hessian_kernels.h"
+#include "base/lanes.h"
+
+namespace {
+
+using spherical_springs::core::HessianArrays;
+using spherical_springs::core::SpringFields;
+
+/// Two tangent coordinates.
+struct Lanes2 {
+  Lanes x, y;
+};
+
+inline Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
+inline Lanes2 operator*(const Lanes& s, const Lanes2& a) { return {s * a.x, s * a.y}; }
+
+struct LaneBlock {
+  Lanes xx, yx, xy, yy;  // by columns
+};
+
+inline LaneBlock operator+(const LaneBlock& a, const LaneBlock& b) {
+  return {a.xx + b.xx, a.yx + b.yx, a.xy + b.xy, a.yy + b.yy};
+}
+inline LaneBlock outer(const Lanes2& a, const Lanes2& b) {
+  return {a.x * b.x, a.y * b.x, a.x * b.y, a.y * b.y};
+}
+
+struct LaneFrame {
+  Lanes3 point, x, y;
+
+  /// Tangent coordinates of a vector.
+  Lanes2 coordinates(const Lanes3& v) const { return {dot(x, v), dot(y, v)}; }
+};
+
+/// Four successive numbers of the place of each lane, one Lanes for each of the four.
+inline void gather(const double* first, const std::uint32_t* rows, Lanes* const (&fields)[4]) {
+  for (int part = 0; part < kLanes / 4; ++part) {
+    Four numbers[4];
+    for (int k = 0; k < 4; ++k) {
+      numbers[k] = loadFour(first + HessianArrays::kPlaceSize * rows[4 * part + k]);
+    }
+    transpose(numbers);
+    for (int k = 0; k < 4; ++k) setFour(numbers[k], part, *fields[k]);
+  }
+}
+
+inline void gather(const double* places, const std::uint32_t* rows, LaneFrame& end) {
+  gather(places, rows, {&end.x.x, &end.x.y, &end.x.z, &end.y.x});
+  gather(places + 4, rows, {&end.y.y, &end.y.z, &end.point.x, &end.point.y});
+  for (int k = 0; k < kLanes; ++k) end.point.z[k] = places[HessianArrays::kPlaceSize * rows[k] + 8];
+}
+
+/// The ends of kLanes springs from `first` on, and what belongs to them.
+template <std::size_t N>
+struct LaneSprings {
+  std::uint32_t rows[N][kLanes];
+  LaneFrame ends[N];
+  Lanes rest, stiffness;
+
+  LaneSprings(const SpringFields<N>& springs, std::uint32_t first, const HessianArrays& arrays) {
+    for (int k = 0; k < kLanes; ++k) {
+      for (std::size_t i = 0; i < N; ++i) rows[i][k] = springs.particles[first + k][i];
+      rest[k] = springs.rest[first + k];
+      stiffness[k] = springs.stiffness[first + k];
+    }
+    for (std::size_t i = 0; i < N; ++i) gather(arrays.places, rows[i], ends[i]);
+  }
+};
+
+template <std::size_t N>
+inline void addGradient(const std::uint32_t (&rows)[N][kLanes], std::size_t end,
+                        const Lanes2& gradient, const HessianArrays& arrays) {
+  for (int k = 0; k < kLanes; ++k) {
+    const std::uint32_t row = rows[end][k];
+    if (row >= arrays.free_count) continue;
+    arrays.gradient[2 * row] += gradient.x[k];
+    arrays.gradient[2 * row + 1] += gradient.y[k];
+  }
+}
+
+/// Adds a block at the ends (i, j) of the springs from `first` on, and its transpose at (j, i).
+template <std::size_t N>
+inline void addBlock(const SpringFields<N>& springs, std::uint32_t first, std::size_t i,
+                     std::size_t j, const LaneBlock& block, const HessianArrays& arrays) {
+  for (int part = 0; part < kLanes / 4; ++part) {
+    Four values[4] = {fourOf(block.xx, part), fourOf(block.yx, part), fourOf(block.xy, part),
+                      fourOf(block.yy, part)};
+    transpose(values);
+    for (int k = 0; k < 4; ++k) {
+      const auto& places = springs.places[first + 4 * part + k];
+      const std::size_t place = places[N * i + j], opposite = places[N * j + i];
+      if (place == HessianArrays::kNotStored) continue;
+      addFour(values[k], arrays.hessian + 4 * place);
+      if (i == j) continue;
+      addFour(shuffled<0, 2, 1, 3>(values[k], values[k]), arrays.hessian + 4 * opposite);
+    }
+  }
+}
+
+inline void leaveOut(std::uint32_t begin, std::uint32_t end, std::uint32_t* left_out,
+                     std::uint32_t& count) {
+  for (std::uint32_t s = begin; s < end; ++s) left_out[count++] = s;
+}
+
+/// Energy of the springs from `first` on, in each lane, added with the rest to `arrays`; false,
+/// with nothing added, where an angle is outside the range.
+inline bool addArcs(const SpringFields<2>& springs, std::uint32_t first,
+                    const HessianArrays& arrays, Lanes& energy) {
+  constexpr double kShortest = 1e-16, kLongest = 0.25;  // of a quarter of the squared chord
+  const LaneSprings<2> s(springs, first, arrays);
+  const Lanes3 chord = s.ends[1].point - s.ends[0].point;
+  const Lanes h = 0.25 * dot(chord, chord);  // the squared sine of half of the angle
+  if (any((h < kShortest) | (h > kLongest))) return false;
+  const Lanes half_sine = squareRoot(h);
+  const Lanes half_cosine = squareRoot(1 - h);
+  const Lanes sine = 2 * half_sine * half_cosine;
+  const Lanes r = 2 * half_sine * arcsineRatio(h) - s.rest;
+  const Lanes kr = s.stiffness * r;
+  energy += 0.5 * kr * r;
+
+  // A tangent vector has the same coordinates at b as its difference from a, and they do not
+  // cancel.
+  const Lanes over_sine = 1 / sine;
+  const Lanes2 ga = -over_sine * s.ends[0].coordinates(chord);
+  const Lanes2 gb = over_sine * s.ends[1].coordinates(chord);
+  addGradient(s.rows, 0, kr * ga, arrays);
+  addGradient(s.rows, 1, kr * gb, arrays);
+
+  // Both ends moving to the same side, and to opposite sides, across the arc.
+  Lanes same = -kr * half_sine / half_cosine;
+  Lanes opposite = kr * half_cosine / half_sine;
+  const Lanes least = arrays.least_curvature * s.stiffness;
+  same = same < least ? Lanes{} : same;
+  opposite = opposite < least ? Lanes{} : opposite;
+  const Lanes near = 0.5 * (same + opposite), across = 0.5 * (same - opposite);
+  const Lanes2 ma = {ga.y, -ga.x}, mb = {-gb.y, gb.x};
+  addBlock(springs, first, 0, 0, outer(s.stiffness * ga, ga) + outer(near * ma, ma), arrays);
+  addBlock(springs, first, 1, 1, outer(s.stiffness * gb, gb) + outer(near * mb, mb), arrays);
+  addBlock(springs, first, 0, 1, outer(s.stiffness * ga, gb) + outer(across * ma, mb), arrays);
+  return true;
+}
+
+/// frame_a^T (b [c]_x + a I) frame_b for scalars a and b.
+inline LaneBlock mixed(const LaneFrame& a, const LaneFrame& b, const Lanes3& c, const Lanes& beta,
+                       const Lanes& alpha) {
+  const Lanes3 cx = beta * cross(c, b.x) + alpha * b.x;
+  const Lanes3 cy = beta * cross(c, b.y) + alpha * b.y;
+  const Lanes2 first = a.coordinates(cx), second = a.coordinates(cy);
+  return {first.x, first.y, second.x, second.y};
+}
+
+inline LaneBlock scaled(const Lanes& factor, const LaneBlock& b) {
+  return {factor * b.xx, factor * b.yx, factor * b.xy, factor * b.yy};
+}
+
+/// The same for triangles.
+inline bool addTriangles(const SpringFields<3>& springs, std::uint32_t first,
+                         const HessianArrays& arrays, Lanes& energy) {
+  constexpr double kLeastDenominator = 0.5, kLargestSquare = 0.25;
+  const LaneSprings<3> s(springs, first, arrays);
+  const Lanes3 &a = s.ends[0].point, &b = s.ends[1].point, &c = s.ends[2].point;
+  const Lanes3 ab = b - a, bc = c - b, ca = a - c;
+  const Lanes triple_product = dot(a, cross(ca, ab));
+  const Lanes denominator = 4 - 0.5 * (dot(ab, ab) + dot(bc, bc) + dot(ca, ca));
+  if (any(denominator < kLeastDenominator)) return false;
+  const Lanes u = triple_product / denominator;
+  const Lanes square = u * u;
+  if (any(square > kLargestSquare)) return false;
+  const Lanes r = 2 * u * arctangentRatio(square) - s.rest;
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  if (any((r > kTurn) | (r < -kTurn))) return false;
+  energy += 0.5 * s.stiffness * r * r;
+
+  const Lanes over = 1 / (denominator * (1 + square));
+  const Lanes beta = over, alpha = u * over;  // both divided by their squared norm
+  const Lanes3 sides[3] = {bc, ca, ab};       // opposite of each vertex
+  Lanes2 us[3], vs[3];
+  Lanes radial[3];
+  for (int i = 0; i < 3; ++i) {
+    const Lanes3& next = s.ends[(i + 1) % 3].point;
+    const Lanes3& last = s.ends[(i + 2) % 3].point;
+    const Lanes3 cross_product = 0.5 * cross(next + last, sides[i]);
+    // A vector has the same coordinates at a vertex as its difference from that.
+    const Lanes3 sum_of_others = sides[(i + 2) % 3] - sides[(i + 1) % 3];
+    const Lanes2 across = s.ends[i].coordinates(cross_product);
+    const Lanes2 along = s.ends[i].coordinates(sum_of_others);
+    us[i] = beta * along + alpha * across;
+    vs[i] = beta * across + -alpha * along;
+    radial[i] = alpha * (2 - 0.5 * dot(sides[i], sides[i]));
+  }
+  const Lanes pull = 2 * s.stiffness * r;
+  for (int i = 0; i < 3; ++i) addGradient(s.rows, i, pull * vs[i], arrays);
+
+  const Lanes bend = arrays.definite ? Lanes{} : -pull;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const Lanes2 bend_u = bend * us[i];
+    const Lanes2 stiff_v = 4 * s.stiffness * vs[i] + bend_u;
+    LaneBlock diagonal = outer(stiff_v, vs[i]) + outer(vs[i], bend_u);
+    diagonal.xx += bend * radial[i];
+    diagonal.yy += bend * radial[i];
+    addBlock(springs, first, i, i, diagonal, arrays);
+    LaneBlock coupling = outer(stiff_v, vs[j]);
+    if (!arrays.definite) {
+      coupling = coupling + outer(bend * vs[i], us[j]) +
+                 scaled(bend, mixed(s.ends[i], s.ends[j], s.ends[k].point, beta, alpha));
+    }
+    addBlock(springs, first, i, j, coupling, arrays);
+  }
+  return true;
+}
+
+/// Asks the memory for what springs from `begin` to `end` add to.
+template <std::size_t N>
+inline void fetchAhead(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t end,
+                       const HessianArrays& arrays) {
+  for (std::uint32_t s = begin; s < end; ++s) {
+    for (const std::uint32_t place : springs.places[s]) {
+      if (place == HessianArrays::kNotStored) continue;
+      __builtin_prefetch(arrays.hessian + 4 * std::size_t{place}, 1);
+    }
+  }
+}
+
+template <std::size_t N,
+          bool (*AddLanes)(const SpringFields<N>&, std::uint32_t, const HessianArrays&, Lanes&)>
+double addAll(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t end,
+              const HessianArrays& arrays, std::uint32_t* left_out, std::uint32_t& left_out_count) {
+  Lanes energy = {};
+  left_out_count = 0;
+  for (; begin + kLanes <= end; begin += kLanes) {
+    const std::uint32_t next = begin + kLanes;
+    fetchAhead(springs, next, next + kLanes < end ? next + kLanes : end, arrays);
+    if (!AddLanes(springs, begin, arrays, energy)) {
+      leaveOut(begin, begin + kLanes, left_out, left_out_count);
+    }
+  }
+  leaveOut(begin, end, left_out, left_out_count);
+  return sum(energy);
+}
+
+}  // namespace
+
+namespace spherical_springs::core {
+
+/// This file's own.
+static constexpr HessianKernels kKernels = {addAll<2, addArcs>, addAll<3, addTriangles>};
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,84 @@
+#include "relaxation/new_starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace spherical_springs::core {
+namespace {
+
+/// For each particle the longest arc to another particle of its springs, or 1 where all are on one
+/// spot [rad].
+Eigen::VectorXd reach(const System& system, const Points& positions) {
+  Eigen::VectorXd longest = Eigen::VectorXd::Zero(system.particleCount());
+  forEachKind([&](auto kind) {
+    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+      for (const std::uint32_t i : spring.particles) {
+        for (const std::uint32_t j : spring.particles) {
+          longest[i] = std::max(longest[i], arc(positions.col(i), positions.col(j)).angle);
+        }
+      }
+    }
+  });
+  return (longest.array() > 0).select(longest, 1);
+}
+
+/// Calls `visit(spring, index)` for each spring that `undefinedSpring` may name.
+template <class Visitor>
+void forEachUndefined(const System& system, const Points& positions, const Visitor& visit) {
+  constexpr double kAtRest = 1e-6;   // [rad] or [sr]
+  constexpr double kSteepest = 1e9;  // beyond it rounding of the points makes the value
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& springs = system.springs<Spring>();
+    for (std::size_t i = 0; i < springs.size(); ++i) {
+      const auto points = System::points(springs[i], positions);
+      if (!nearlyUndefined(springs[i], points)) continue;
+      const auto c = condition(springs[i], points);
+      double slope = 0;  // 0 at the very place, where the value is a convention
+      for (const Vector3& gradient : c.gradient) slope = std::max(slope, gradient.norm());
+      const bool at_rest = std::abs(c.value) < kAtRest && slope > 0 && slope < kSteepest;
+      if (!at_rest) visit(springs[i], i);
+    }
+  });
+}
+
+}  // namespace
+
+Points displaced(const System& system, Points positions, double share, unsigned seed) {
+  std::mt19937 generator(seed);
+  const Eigen::VectorXd longest = reach(system, positions);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    Eigen::Vector2d step;
+    for (int k = 0; k < 2; ++k) step[k] = generator() / (0.5 * std::mt19937::max()) - 1;
+    if (system.pinned(i) || !system.joined(i)) continue;
+    const Vector3 p = positions.col(i);
+    positions.col(i) = rotated(p, share * longest[i] * (tangentFrame(p) * step));
+  }
+  return positions;
+}
+
+std::string undefinedSpring(const System& system, const Points& positions) {
+  std::string name;
+  forEachUndefined(system, positions, [&](const auto& spring, std::size_t index) {
+    if (name.empty()) name = nameOf<std::decay_t<decltype(spring)>>(system, index);
+  });
+  return name;
+}
+
+Points besideUndefined(const System& system, Points positions, double distance, unsigned seed) {
+  std::mt19937 generator(seed);
+  const Points from = positions;
+  forEachUndefined(system, from, [&](const auto& spring, std::size_t) {
+    for (const std::uint32_t i : spring.particles) {
+      const double angle = 2 * kPi * (generator() / (std::mt19937::max() + 1.));
+      if (system.pinned(i)) continue;
+      const Vector3 p = from.col(i);
+      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+      positions.col(i) = rotated(p, distance * (tangentFrame(p) * direction));
+    }
+  });
+  return positions;
+}
+
+}  // namespace spherical_springs::core

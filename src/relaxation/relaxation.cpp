@@ -1,0 +1,272 @@
+#include "spherical_springs/relaxation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "system/alignment.h"
+#include "relaxation/damped_dynamics.h"
+#include "relaxation/fire.h"
+#include "relaxation/newton.h"
+#include "relaxation/particle_stiffness.h"
+#include "relaxation/torque_limit.h"
+#include "relaxation/new_starts.h"
+#include "spherical_springs/range.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Null for Newton's method.
+std::unique_ptr<Descent> dynamicsOf(RelaxationMethod method, const System& system,
+                                    OrientationGuard* guard, const TorqueLimit& limit) {
+  switch (method) {
+    case RelaxationMethod::newton:
+      return nullptr;
+    case RelaxationMethod::dynamics:
+      return std::make_unique<DampedDynamics>(system, guard, limit);
+    case RelaxationMethod::fire:
+      return std::make_unique<Fire>(system, guard, limit);
+  }
+  return nullptr;
+}
+
+/// One relaxation under way.
+class Relaxation {
+ public:
+  /// `newton` is to fit the system; `at_start`: whether it is at `positions` already.
+  Relaxation(const System& system, const Points& positions, const RelaxationOptions& options,
+             Newton& newton, bool at_start)
+      : system_(system),
+        options_(options),
+        limit_(system, options.tolerance),
+        start_(positions),
+        guard_(system),
+        newton_(newton) {
+    OrientationGuard* const guard = options.keep_orientation ? &guard_ : nullptr;
+    newton_.keepOrientation(guard);
+    newton_.aimAt(&limit_);
+    if (!at_start) newton_.place(positions);
+    calm_ = newton_.calm();
+    dynamics_ = dynamicsOf(options.method, system, guard, limit_);
+    if (dynamics_) dynamics_->place(positions);
+    descent_ = dynamics_ ? dynamics_.get() : &newton_;
+    first_excess_ = descent_->excess();
+    result_.energy_before = descent_->value();
+    keep();
+  }
+
+  ~Relaxation() {
+    newton_.aimAt(nullptr);
+    newton_.keepOrientation(nullptr);
+  }
+  Relaxation(const Relaxation&) = delete;
+  Relaxation& operator=(const Relaxation&) = delete;
+
+  RelaxationResult run() {
+    descendToMinimum();
+    result_.positions = aligned(system_, start_, std::move(result_.positions), calm_);
+    return std::move(result_);
+  }
+
+ private:
+  enum class Outcome { within_limit, stuck, ended };
+
+  void descendToMinimum() {
+    constexpr unsigned kAttempts = 20;
+    constexpr unsigned kStuckAttempts = 3;
+    unsigned stuck = 0;
+    for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
+      const Outcome outcome = descend();
+      if (outcome == Outcome::ended) return;
+      if (outcome == Outcome::within_limit) keep();
+      if (!undefinedSpring(system_, result_.positions).empty()) {
+        if (leaveUndefined(attempt)) continue;
+        break;
+      }
+      if (outcome == Outcome::within_limit) {
+        if (leaveSaddle()) continue;
+        result_.converged = true;
+        result_.message = "converged";
+        return;
+      }
+      if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
+      if (options_.keep_orientation) break;
+      descent_->place(displaced(system_, descent_->positions(), shareOf(attempt), attempt));
+    }
+    giveUp();
+  }
+
+  static double shareOf(unsigned attempt) { return std::min(0.1, 1e-3 * std::pow(10, attempt)); }
+
+  bool leaveSaddle() {
+    if (dynamics_) newton_.place(dynamics_->positions());
+    if (!newton_.leaveSaddle()) return false;
+    if (dynamics_) dynamics_->place(newton_.positions());
+    return true;
+  }
+
+  /// Starts again beside a place where the condition of a spring is undefined, and with it the
+  /// energy: it need be no minimum, though nothing pulls there.
+  bool leaveUndefined(unsigned attempt) {
+    constexpr unsigned kAttempts = 4;
+    if (options_.keep_orientation || attempt >= kAttempts) return false;
+    const Points beside = besideUndefined(system_, result_.positions, shareOf(attempt), attempt);
+    if (!undefinedSpring(system_, beside).empty()) return false;
+    descent_->place(beside);
+    return true;
+  }
+
+  // A minimum is approached to below the limit, so that it is within it however rounding, and the
+  // turn of the whole at the end, change the torque.
+  Outcome descend() {
+    constexpr double kEnough = 0.9;
+    if (descent_->excess() <= 1) return Outcome::within_limit;
+    while (descent_->excess() > kEnough) {
+      if (!goOn()) return Outcome::ended;
+      const bool moved = descent_->iterate();
+      ++result_.iterations;
+      if (isBetter()) keep();
+      if (!moved) return descent_->excess() <= 1 ? Outcome::within_limit : Outcome::stuck;
+    }
+    return Outcome::within_limit;
+  }
+
+  /// Whether the torque is what rounding of the positions makes of the springs' stiffness.
+  bool atRoundingFloor() const {
+    constexpr double kRounding = 1e-11;
+    return descent_->maxTorque() <
+           kRounding * particleStiffness(system_, descent_->positions()).maxCoeff();
+  }
+
+  /// Lower in energy than what is kept or, where rounding hides that, in torque.
+  bool isBetter() const {
+    constexpr double kRounding = 1e-13;
+    const double drop = result_.energy_after - descent_->value();
+    if (std::abs(drop) > kRounding * result_.energy_after) return drop > 0;
+    return descent_->excess() < excess_;
+  }
+
+  void keep() {
+    result_.positions = descent_->positions();
+    result_.energy_after = descent_->value();
+    result_.max_torque = descent_->maxTorque();
+    excess_ = descent_->excess();
+  }
+
+  bool goOn() {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
+    if (options_.max_time > 0 && elapsed >= options_.max_time) {
+      result_.message = "max_time is over; " + torqueLeft();
+      return false;
+    }
+    if (options_.go_on({result_, fraction()})) return true;
+    result_.message = "cancelled; largest torque " + toText(result_.max_torque) + " N m";
+    return false;
+  }
+
+  /// How much of the way to the limit is done, by the logarithm of the torque.
+  double fraction() const {
+    const double way = std::log(first_excess_);
+    const double gone = std::log(first_excess_ / std::max(excess_, 1.));
+    return way > 0 && std::isfinite(way) ? std::clamp(gone / way, 0., 1.) : 0;
+  }
+
+  void giveUp() {
+    const std::string undefined = undefinedSpring(system_, result_.positions);
+    std::string reason = "a long series of steps gained next to nothing";
+    if (options_.keep_orientation && guard_.tightest()) {
+      reason = nameOf<SolidAngleSpring>(system_, *guard_.tightest()) + " would fold";
+    } else if (!undefined.empty()) {
+      reason = undefined + " has antipodal vertices, where its area is undefined";
+    } else if (excess_ <= 1) {
+      reason = "the torque is within the tolerance, but not at a minimum of the energy";
+    } else if (atRoundingFloor()) {
+      reason = "rounding lets no step lower the energy further";
+    }
+    result_.message = "stopped: " + reason + "; " + torqueLeft();
+  }
+
+  std::string torqueLeft() const {
+    const std::string largest = "largest torque " + toText(result_.max_torque) + " N m";
+    return largest + excessInWords(system_, result_.positions, limit_);
+  }
+
+  const System& system_;
+  const RelaxationOptions& options_;
+  const TorqueLimit limit_;
+  const Clock::time_point begin_ = Clock::now();
+  const Points& start_;
+  std::vector<bool> calm_;  // at the start
+  OrientationGuard guard_;
+  Newton& newton_;
+  std::unique_ptr<Descent> dynamics_;  // none for Newton's method
+  Descent* descent_;
+  double first_excess_;
+  RelaxationResult result_;
+  double excess_ = 0;  // of the result
+};
+
+}  // namespace
+
+RelaxationMethod relaxationMethod(const std::string& name) {
+  if (name.empty() || name == "newton") return RelaxationMethod::newton;
+  if (name == "dynamics") return RelaxationMethod::dynamics;
+  if (name == "fire") return RelaxationMethod::fire;
+  throw std::invalid_argument("method is " + quoted(name) +
+                              "; allowed: newton (the default), dynamics, fire");
+}
+
+void requireValid(const RelaxationOptions& options) {
+  requireInside(
+      Range{0, kLargest, "0 (1e-9 of the stiffness that each particle feels) to 1e30 [N m]"},
+      options.tolerance, "tolerance");
+  requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
+}
+
+RelaxationResult unrelaxed(const System& system, const Points& positions) {
+  RelaxationResult result;
+  result.positions = positions;
+  result.energy_before = result.energy_after = system.potential(positions).total();
+  System::Workspace workspace;
+  system.evaluate(positions, workspace);
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    if (system.pinned(i)) continue;
+    result.max_torque = std::max(result.max_torque, workspace.torques.col(i).stableNorm());
+  }
+  return result;
+}
+
+Relaxer::Relaxer() = default;
+Relaxer::~Relaxer() = default;
+
+RelaxationResult Relaxer::relax(const System& system, const Points& positions,
+                                const RelaxationOptions& options) {
+  requireValid(options);
+  // Only from the very place where the last one ended, so that results do not depend on what was
+  // relaxed before from elsewhere.
+  const bool goes_on = newton_ && newton_->fits(system) && positions == last_end_;
+  // Kept only from a relaxation that has come to its end.
+  std::unique_ptr<Newton> newton = std::move(newton_);
+  if (goes_on) {
+    newton->goOn(system, positions);
+  } else {
+    newton = std::make_unique<Newton>(system, positions);
+  }
+  RelaxationResult result = Relaxation(system, positions, options, *newton, goes_on).run();
+  if (options.method == RelaxationMethod::newton) {
+    last_end_ = Points(result.positions);
+    newton_ = std::move(newton);
+  }
+  return result;
+}
+
+RelaxationResult relax(const System& system, const Points& positions,
+                       const RelaxationOptions& options) {
+  return Relaxer().relax(system, positions, options);
+}
+
+}  // namespace spherical_springs::core

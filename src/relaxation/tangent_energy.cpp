@@ -1,0 +1,328 @@
+#include "relaxation/tangent_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/buckets.h"
+#include "relaxation/hessian_kernels.h"
+
+namespace spherical_springs::core {
+
+namespace {
+
+/// Particles that something acts on: springs or, where there is inertia, their targets.
+std::vector<bool> freeParticles(const System& system, bool inertia) {
+  std::vector<bool> free(system.particleCount());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    free[i] = !system.pinned(i) && (inertia || system.joined(i));
+  }
+  return free;
+}
+
+}  // namespace
+
+TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
+    : threads_(system.threads()),
+      order_(particleOrder(freeParticles(system, inertia.size() > 0), positions)),
+      pattern_(freeGraph(system, order_, threads_), threads_),
+      far_apart_(farApart(pattern_.graph, pattern_.order, threads_)),
+      inertia_(std::move(inertia)) {
+  forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
+  take(system);
+  gradient_.resize(2 * freeCount());
+  hessian_.resize(pattern_.graph.neighbours.size());
+  block_values_.resize(pattern_.order.blocks());
+}
+
+/// Springs by the block of their first free particle in the order here.
+template <class Spring>
+void TangentEnergy::compile(const System& system) {
+  constexpr std::size_t kEnds = Spring::kParticles;
+  auto& compiled = compiled_.get<Spring>();
+  const auto& springs = system.springs<Spring>();
+  const std::size_t blocks = pattern_.order.blocks();
+  const auto lowest = [&](const Spring& spring) {
+    std::uint32_t least = ~0u;
+    for (const std::uint32_t i : spring.particles) least = std::min(least, order_.numbers[i]);
+    return least;
+  };
+  auto by_lowest = dealtOut<std::uint32_t>(order_.particles.size(), [&](const auto& visit) {
+    for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowest(springs[s]), s);
+  });
+  compiled.first.resize(blocks + 1);
+  for (std::size_t b = 0; b <= blocks; ++b) {
+    compiled.first[b] = by_lowest.first[pattern_.order.first_node[b]];
+  }
+  compiled.sources = std::move(by_lowest.items);
+  const auto placeOf = [&](std::uint32_t row, std::uint32_t column) {
+    if (row >= freeCount() || column >= freeCount()) return HessianArrays::kNotStored;
+    return row == column ? pattern_.diagonal[row] : pattern_.place(row, column);
+  };
+  compiled.springs.resize(springs.size());
+  compiled.places.resize(springs.size());
+  parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
+    Spring& spring = compiled.springs[s];
+    spring = springs[compiled.sources[s]];
+    for (std::uint32_t& i : spring.particles) i = order_.numbers[i];
+    for (std::size_t i = 0; i < kEnds; ++i) {
+      for (std::size_t j = 0; j < kEnds; ++j) {
+        compiled.places[s][kEnds * i + j] = placeOf(spring.particles[i], spring.particles[j]);
+      }
+    }
+  });
+}
+
+bool TangentEnergy::fits(const System& system) const {
+  constexpr double kMostChange = 2;  // factor of a stiffness
+  if (static_cast<std::size_t>(system.particleCount()) != order_.particles.size()) return false;
+  const std::vector<bool> free = freeParticles(system, inertia_.size() > 0);
+  for (std::size_t n = 0; n < order_.particles.size(); ++n) {
+    if (free[order_.particles[n]] != (n < freeCount())) return false;
+  }
+  bool fits = true;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& compiled = compiled_.get<Spring>();
+    const auto& springs = system.springs<Spring>();
+    fits = fits && springs.size() == compiled.springs.size();
+    for (std::size_t s = 0; fits && s < compiled.springs.size(); ++s) {
+      const Spring& spring = springs[compiled.sources[s]];
+      const double stiffness = unit_ * compiled.springs[s].stiffness;
+      fits = stiffness <= kMostChange * spring.stiffness &&
+             spring.stiffness <= kMostChange * stiffness;
+      for (std::size_t j = 0; j < Spring::kParticles; ++j) {
+        fits = fits && order_.numbers[spring.particles[j]] == compiled.springs[s].particles[j];
+      }
+    }
+  });
+  return fits;
+}
+
+void TangentEnergy::take(const System& system) {
+  unit_ = system.largestStiffness();
+  if (inertia_.size() > 0) unit_ = std::max(unit_, inertia_.maxCoeff());
+  if (unit_ == 0) unit_ = 1;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    auto& compiled = compiled_.get<Spring>();
+    const auto& springs = system.springs<Spring>();
+    parallelFor(compiled.springs.size(), threads_, [&](std::ptrdiff_t s) {
+      Spring spring = springs[compiled.sources[s]];
+      spring.particles = compiled.springs[s].particles;
+      spring.stiffness /= unit_;
+      compiled.springs[s] = spring;
+    });
+  });
+}
+
+namespace {
+
+/// The frame turned as little as leaves it tangent at `p`.
+TangentFrame carried(const TangentFrame& frame, const Vector3& p) {
+  const Vector3 x = frame.col(0);
+  TangentFrame result;
+  result.col(0) = (x - x.dot(p) * p).normalized();
+  result.col(1) = p.cross(result.col(0));
+  return result;
+}
+
+}  // namespace
+
+void TangentEnergy::place(const Points& positions) {
+  places_.resize(order_.particles.size());
+  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
+    const Vector3 point = positions.col(order_.particles[n]);
+    places_[n] = {tangentFrame(point), point};
+  });
+  findPinnedValue();
+}
+
+void TangentEnergy::carry(const Points& positions) {
+  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
+    const Vector3 point = positions.col(order_.particles[n]);
+    places_[n] = {carried(places_[n].frame, point), point};
+  });
+  findPinnedValue();
+}
+
+void TangentEnergy::findPinnedValue() {
+  pinned_value_ = 0;
+  forEachKind([&](auto kind) {
+    const auto& compiled = compiled_.get<typename decltype(kind)::type>();
+    for (std::size_t s = compiled.first.back(); s < compiled.springs.size(); ++s) {
+      pinned_value_ += addOne(compiled, s, Curvature::definite);
+    }
+  });
+}
+
+void TangentEnergy::setTargets(const Points& targets) {
+  targets_.resize(freeCount());
+  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(order_.particles[n]);
+}
+
+void TangentEnergy::move(const Eigen::VectorXd& step) {
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    if (step.segment<2>(2 * n).isZero(0)) return;
+    const auto& [frame, from] = places_[n];
+    const Vector3 point = (from + frame * step.segment<2>(2 * n)).normalized();
+    places_[n] = {carried(frame, point), point};
+  });
+}
+
+void TangentEnergy::mark() { marked_places_ = places_; }
+
+void TangentEnergy::goBack() { places_ = marked_places_; }
+
+double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
+  const Graph& graph = pattern_.graph;
+  return -parallelSum(freeCount(), threads_, [&](std::ptrdiff_t i) {
+    const Eigen::Vector2d product =
+        rowProduct<double, 2>(graph, hessian_, step, graph.first[i], graph.first[i + 1]);
+    return step.segment<2>(2 * i).dot(gradient_.segment<2>(2 * i) + 0.5 * product);
+  });
+}
+
+namespace {
+
+/// Of kinds that have a kernel: which, and the rest value that it takes.
+HessianKernel<2> kernelFor(const AngleSpring&) { return hessianKernels().angle_springs; }
+HessianKernel<3> kernelFor(const SolidAngleSpring&) { return hessianKernels().solid_angle_springs; }
+template <class Spring>
+void* kernelFor(const Spring&) {
+  return nullptr;
+}
+const double& restOf(const AngleSpring& spring) { return spring.rest_angle; }
+const double& restOf(const SolidAngleSpring& spring) { return spring.rest_solid_angle; }
+
+}  // namespace
+
+template <class Spring>
+double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
+                          Curvature curvature) {
+  const std::uint32_t begin = compiled.first[block], end = compiled.first[block + 1];
+  if (begin == end) return 0;
+  double value = 0;
+  if constexpr (std::is_same_v<decltype(kernelFor(Spring())), HessianKernel<Spring::kParticles>>) {
+    const Spring& first = compiled.springs.front();
+    const SpringFields<Spring::kParticles> fields = {
+        {first.particles.data(), sizeof(Spring)},
+        {&restOf(first), sizeof(Spring)},
+        {&first.stiffness, sizeof(Spring)},
+        {compiled.places.data(), sizeof(compiled.places[0])}};
+    static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
+    const HessianArrays arrays = {places_.front().frame.data(),
+                                  static_cast<std::uint32_t>(freeCount()),
+                                  gradient_.data(),
+                                  hessian_.front().data(),
+                                  curvature == Curvature::definite,
+                                  leastCurvature(curvature)};
+    std::vector<std::uint32_t> left_out(end - begin);
+    std::uint32_t count = 0;
+    value = kernelFor(first)(fields, begin, end, arrays, left_out.data(), count);
+    for (std::uint32_t i = 0; i < count; ++i) value += addOne(compiled, left_out[i], curvature);
+  } else {
+    for (std::uint32_t s = begin; s < end; ++s) value += addOne(compiled, s, curvature);
+  }
+  return value;
+}
+
+template <class Spring>
+double TangentEnergy::addOne(const Compiled<Spring>& compiled, std::size_t s, Curvature curvature) {
+  constexpr std::size_t kEnds = Spring::kParticles;
+  const Spring& spring = compiled.springs[s];
+  std::array<Vector3, kEnds> points;
+  std::array<TangentFrame, kEnds> frames;
+  for (std::size_t i = 0; i < kEnds; ++i) {
+    points[i] = places_[spring.particles[i]].point;
+    frames[i] = places_[spring.particles[i]].frame;
+  }
+  const auto c = tangentCondition(spring, points, frames, curvature);
+  for (std::size_t i = 0; i < kEnds; ++i) {
+    if (spring.particles[i] >= freeCount()) continue;
+    gradient_.segment<2>(2 * spring.particles[i]) += spring.stiffness * c.value * c.gradient[i];
+    for (std::size_t j = 0; j < kEnds; ++j) {
+      const std::uint32_t place = compiled.places[s][kEnds * i + j];
+      if (place == HessianArrays::kNotStored) continue;
+      hessian_[place] += spring.stiffness *
+                         (c.gradient[i] * c.gradient[j].transpose() + c.value * c.hessian[i][j]);
+    }
+  }
+  return 0.5 * spring.stiffness * c.value * c.value;
+}
+
+void TangentEnergy::evaluate(Curvature curvature) {
+  gradient_.setZero();
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    for (std::uint32_t e = pattern_.graph.first[n]; e < pattern_.graph.first[n + 1]; ++e) {
+      hessian_[e].setZero();
+    }
+  });
+  const int threads = worthwhileThreads(freeCount(), threads_);
+  far_apart_.forEach(threads, [&](std::size_t block) {
+    double value = 0;
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      value += add(compiled_.get<Spring>(), block, curvature);
+    });
+    block_values_[block] = value;
+  });
+  value_ = pinned_value_;
+  for (const double value : block_values_) value_ += value;
+  if (inertia_.size() > 0) addInertia(curvature);
+}
+
+// The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
+void TangentEnergy::addInertia(Curvature curvature) {
+  for (std::size_t n = 0; n < freeCount(); ++n) {
+    const double stiffness = inertia_[order_.particles[n]] / unit_;
+    const auto& [frame, point] = places_[n];
+    const auto c = tangentCondition(AngleSpring(), {point, targets_[n]}, {frame, frame}, curvature);
+    value_ += 0.5 * stiffness * c.value * c.value;
+    gradient_.segment<2>(2 * n) += stiffness * c.value * c.gradient[0];
+    hessian_[pattern_.diagonal[n]] +=
+        stiffness * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]);
+  }
+}
+
+std::vector<TangentFrame> TangentEnergy::frames() const {
+  std::vector<TangentFrame> result(freeCount());
+  for (std::size_t n = 0; n < freeCount(); ++n) result[n] = places_[n].frame;
+  return result;
+}
+
+double TangentEnergy::maxTorque() const {
+  return unit_ * std::sqrt(parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {
+           return gradient_.segment<2>(2 * n).squaredNorm();
+         }));
+}
+
+Eigen::VectorXd TangentEnergy::reach() const {
+  const Graph& graph = pattern_.graph;
+  Eigen::VectorXd longest(freeCount());
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t i) {
+    double squared = 0;
+    for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const Vector3& other = places_[graph.neighbours[e]].point;
+      squared = std::max(squared, (other - places_[i].point).squaredNorm());
+    }
+    longest[i] = squared > 0 ? std::sqrt(squared) : 1;
+  });
+  return longest;
+}
+
+Points TangentEnergy::positions() const {
+  Points result(3, order_.particles.size());
+  parallelFor(order_.particles.size(), threads_,
+              [&](std::ptrdiff_t n) { result.col(order_.particles[n]) = places_[n].point; });
+  return result;
+}
+
+Points TangentEnergy::moves(const Eigen::VectorXd& step) const {
+  Points result = Points::Zero(3, static_cast<Eigen::Index>(order_.particles.size()));
+  for (std::size_t n = 0; n < freeCount(); ++n) {
+    result.col(order_.particles[n]) = places_[n].frame * step.segment<2>(2 * n);
+  }
+  return result;
+}
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,116 @@
+// The energy of a system as a function on the tangent planes of its free particles.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "linear/block_matrix.h"
+#include "relaxation/particle_order.h"
+#include "spherical_springs/system.h"
+
+namespace spherical_springs::core {
+
+/// A point of the sphere and the frame of its tangent plane, padded to the size that the kernels of
+/// Hessians take.
+struct alignas(2 * sizeof(double)) TangentPlace {
+  TangentFrame frame;
+  Vector3 point;
+};
+
+/// Energies are in units of `unit()`, the largest stiffness, so that single precision holds every
+/// Hessian. Free particles come in an order of their own, in which those that are joined are close;
+/// free particle f has the unknowns 2 f and 2 f + 1, its coordinates in a tangent frame of its own.
+class TangentEnergy {
+ public:
+  using Hessian = Blocks<double, 2>;
+
+  /// `positions`: for the order only. `inertia`: [J/rad^2], one a particle, on the squared distance
+  /// from a target; none in a relaxation.
+  TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia = {});
+
+  /// Whether the same springs, whatever their rest and about as stiff, join the same particles in
+  /// `system`, and the same are pinned.
+  bool fits(const System& system) const;
+  /// Takes rest and stiffness from a system that fits.
+  void take(const System& system);
+
+  double unit() const { return unit_; }  ///< [J]
+  const BlockPattern& pattern() const { return pattern_; }
+  std::size_t freeCount() const { return pattern_.rows(); }
+
+  /// Puts the particles somewhere; `evaluate` is to follow.
+  void place(const Points& positions);
+  /// The same, with frames carried along from where the particles were.
+  void carry(const Points& positions);
+  void setTargets(const Points& targets);
+
+  /// Moves the free particles by tangent vectors [rad] and back onto the sphere along their
+  /// radius, frames along with them; `evaluate` is to follow.
+  void move(const Eigen::VectorXd& step);
+  /// Keeps the places of the particles, to go back to.
+  void mark();
+  void goBack();
+
+  /// Value, gradient and Hessian where the particles are.
+  void evaluate(Curvature curvature);
+
+  double value() const { return value_; }
+  const Eigen::VectorXd& gradient() const { return gradient_; }
+  const Hessian& hessian() const { return hessian_; }
+  /// Of the free particles.
+  std::vector<TangentFrame> frames() const;
+
+  /// What the quadratic model of the last evaluation promises of a step.
+  double expectedDrop(const Eigen::VectorXd& step) const;
+
+  /// Largest gradient of a free particle, which is its torque [N m].
+  double maxTorque() const;
+
+  /// For each free particle the longest chord to another that a spring joins it with, or 1 where
+  /// there is none.
+  Eigen::VectorXd reach() const;
+
+  /// Of all particles, in the order of their ids.
+  Points positions() const;
+  /// The tangent vectors by which a step moves the particles, in the same order.
+  Points moves(const Eigen::VectorXd& step) const;
+  /// Particle of each free one.
+  std::uint32_t particle(std::size_t free) const { return order_.particles[free]; }
+
+ private:
+  template <class Spring>
+  struct Compiled {
+    std::vector<Spring> springs;         ///< whose particles are numbers in the order here
+    std::vector<std::uint32_t> sources;  ///< their indices in the system
+    std::vector<std::array<std::uint32_t, Spring::kParticles * Spring::kParticles>> places;
+    /// Of each block of the pattern, and the end; springs after that join only pinned particles.
+    std::vector<std::uint32_t> first;
+  };
+
+  template <class Spring>
+  void compile(const System& system);
+  template <class Spring>
+  double add(const Compiled<Spring>& compiled, std::size_t block, Curvature curvature);
+  template <class Spring>
+  double addOne(const Compiled<Spring>& compiled, std::size_t spring, Curvature curvature);
+  void addInertia(Curvature curvature);
+  void findPinnedValue();
+
+  int threads_;
+  ParticleOrder order_;
+  BlockPattern pattern_;
+  Schedule far_apart_;  // of the pattern's blocks
+  PerKind<Compiled> compiled_;
+  double unit_ = 1;
+  Eigen::VectorXd inertia_;
+  std::vector<Vector3> targets_;
+  std::vector<TangentPlace> places_, marked_places_;
+  double value_ = 0, pinned_value_ = 0;
+  Eigen::VectorXd gradient_;
+  Hessian hessian_;
+  std::vector<double> block_values_;
+};
+
+}  // namespace spherical_springs::core

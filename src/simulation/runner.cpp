@@ -1,0 +1,311 @@
+#include "simulation/runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <utility>
+
+#include "system/alignment.h"
+#include "spherical_springs/range.h"
+
+namespace spherical_springs::core {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Lock = std::lock_guard<FairMutex>;
+using ControlLock = std::lock_guard<std::mutex>;
+
+constexpr std::chrono::milliseconds kSlice(2);       // of stepping between chances for others
+constexpr std::chrono::milliseconds kShowEvery(20);  // what long work has come to
+
+}  // namespace
+
+/// Marks the runner as busy for its own lifetime.
+class Runner::Busy {
+ public:
+  Busy(Runner& runner, Activity activity) : runner_(runner) {
+    const Lock lock(runner_.mutex_);
+    runner_.requireIdle();
+    const ControlLock control(runner_.control_);
+    if (runner_.closed_) throw std::runtime_error("the node is shutting down");
+    if (activity == Activity::stepping && runner_.running_) {
+      throw std::runtime_error("the simulation is running; pause it first by ~set_running");
+    }
+    runner_.activity_ = activity;
+    runner_.relax_progress_ = 0;
+    runner_.cancelled_ = false;
+  }
+  ~Busy() {
+    const ControlLock control(runner_.control_);
+    runner_.activity_ = Activity::none;
+    runner_.shown_.reset();
+  }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
+
+ private:
+  Runner& runner_;
+};
+
+Activity Runner::activity() const {
+  const ControlLock control(control_);
+  return activity_;
+}
+
+void Runner::requireIdle() const {
+  const Activity now = activity();
+  if (now == Activity::none) return;
+  const std::string what = now == Activity::relaxing ? "~relax" : "~step";
+  throw std::runtime_error("a " + what + " is under way; wait for it or end it by ~cancel");
+}
+
+void Runner::setRunning(bool running) {
+  const Lock lock(mutex_);
+  requireIdle();
+  const ControlLock control(control_);
+  running_ = running;
+}
+
+// One step shows how many more there is time for.
+std::uint64_t Runner::stepForASlice(std::uint64_t most) {
+  using Seconds = std::chrono::duration<double>;
+  constexpr double kShortest = 1e-9;  // what a clock may round to 0 [s]
+  const auto begin = Clock::now();
+  std::uint64_t done = 0, steps = 1;
+  double left;
+  do {
+    steps = std::min(steps, most - done);
+    simulation_.step(steps);
+    done += steps;
+    const double taken = Seconds(Clock::now() - begin).count();
+    step_wall_time_ = std::max(taken / done, kShortest);
+    left = Seconds(kSlice).count() - taken;
+    steps = left > step_wall_time_ ? static_cast<std::uint64_t>(left / step_wall_time_) : 1;
+  } while (done < most && left > 0);
+  return done;
+}
+
+std::uint64_t Runner::advance(std::uint64_t steps, double wall_time) {
+  const auto end = Clock::now() + std::chrono::duration<double>(wall_time);
+  const auto mayStep = [this] {
+    const ControlLock control(control_);
+    return running_ && activity_ == Activity::none;
+  };
+  std::uint64_t done = 0;
+  while (done < steps && Clock::now() < end) {
+    const Lock lock(mutex_);
+    if (!mayStep()) break;
+    done += stepForASlice(steps - done);
+  }
+  return done;
+}
+
+std::uint64_t Runner::step(std::uint64_t steps) {
+  const Busy busy(*this, Activity::stepping);
+  State before = read([](const Simulation& s) { return s.state(); });
+  std::uint64_t done = 0;
+  try {
+    while (done < steps && !cancelled_) {
+      const Lock lock(mutex_);
+      done += stepForASlice(steps - done);
+    }
+  } catch (...) {
+    const Lock lock(mutex_);
+    simulation_.restore(std::move(before));
+    throw;
+  }
+  if (done < steps) {
+    const Lock lock(mutex_);
+    simulation_.settle(Points(simulation_.state().positions));
+  }
+  return done;
+}
+
+/// A relaxation on a thread of its own, which may be left to end by itself.
+struct Runner::Work {
+  Work(std::shared_ptr<const System> system, Points start, const RelaxationOptions& options)
+      : system(std::move(system)), start(std::move(start)), options(options) {}
+
+  const std::shared_ptr<const System> system;
+  const Points start;
+  RelaxationOptions options;
+
+  std::mutex mutex;  // guards what follows
+  std::condition_variable changed;
+  std::shared_ptr<const RelaxationResult> best;  // null before the first iteration
+  double fraction = 0;
+  RelaxationResult result;  // once finished without a fault
+  bool finished = false;
+  bool abandoned = false;
+  std::exception_ptr fault;
+
+  void run(Relaxer& relaxer) {
+    options.go_on = [this](const RelaxationProgress& progress) {
+      auto copy = std::make_shared<const RelaxationResult>(progress.best);
+      const std::lock_guard<std::mutex> lock(mutex);
+      best.swap(copy);
+      fraction = progress.fraction;
+      return !abandoned;
+    };
+    RelaxationResult found;
+    std::exception_ptr thrown;
+    try {
+      found = relaxer.relax(*system, start, options);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    result = std::move(found);
+    fault = thrown;
+    finished = true;
+    changed.notify_all();
+  }
+
+  void abandon() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    abandoned = true;
+  }
+
+  /// The answer of a relaxation that was cancelled when it had come to `reached`; null: nowhere.
+  RelaxationResult cancelled(const std::shared_ptr<const RelaxationResult>& reached) const {
+    RelaxationResult answer = reached ? *reached : unrelaxed(*system, start);
+    answer.positions = aligned(*system, start, std::move(answer.positions));
+    answer.message = "cancelled; largest torque " + toText(answer.max_torque) + " N m";
+    return answer;
+  }
+};
+
+Runner::~Runner() {
+  if (worker_.joinable()) worker_.join();
+}
+
+std::shared_ptr<Runner::Work> Runner::beginning(const RelaxationOptions& options) {
+  const Lock lock(mutex_);
+  return std::make_shared<Work>(simulation_.system(), simulation_.state().positions, options);
+}
+
+/// Waits for the worker of a relaxation that was cancelled, which may be in the middle of an
+/// iteration.
+/// @return false where this relaxation is cancelled first.
+bool Runner::awaitLastWorker() {
+  if (!worker_.joinable()) return true;
+  {
+    std::unique_lock<std::mutex> lock(last_work_->mutex);
+    while (!last_work_->finished && !cancelled_) last_work_->changed.wait_for(lock, kShowEvery);
+    if (!last_work_->finished) return false;
+  }
+  worker_.join();
+  return true;
+}
+
+RelaxationResult Runner::relax(const RelaxationOptions& options) {
+  requireValid(options);
+  const Busy busy(*this, Activity::relaxing);
+  const auto work = beginning(options);
+  RelaxationResult result;
+  if (awaitLastWorker()) {
+    last_work_ = work;
+    worker_ = std::thread([this, work] { work->run(relaxer_); });
+    try {
+      result = await(*work);
+    } catch (...) {
+      work->abandon();
+      throw;
+    }
+  } else {
+    result = work->cancelled(nullptr);
+  }
+  settle(result.positions);
+  return result;
+}
+
+RelaxationResult Runner::await(Work& work) {
+  std::unique_lock<std::mutex> lock(work.mutex);
+  while (!work.finished && !cancelled_) {
+    work.changed.wait_for(lock, kShowEvery);
+    show(work.best, work.fraction);
+  }
+  if (work.fault) std::rethrow_exception(work.fault);
+  if (work.finished) return std::move(work.result);
+  work.abandoned = true;
+  const auto reached = work.best;
+  lock.unlock();
+  return work.cancelled(reached);
+}
+
+void Runner::show(const std::shared_ptr<const RelaxationResult>& best, double fraction) {
+  const ControlLock control(control_);
+  shown_ = best;
+  relax_progress_ = fraction;
+}
+
+/// Ends what a relaxation shows as well, so that nothing older is seen after it.
+void Runner::settle(const Points& positions) {
+  const Lock lock(mutex_);
+  simulation_.settle(positions);
+  const ControlLock control(control_);
+  shown_.reset();
+}
+
+bool Runner::cancel() {
+  const ControlLock control(control_);
+  if (activity_ == Activity::none) return false;
+  cancelled_ = true;
+  return true;
+}
+
+void Runner::close() {
+  const ControlLock control(control_);
+  closed_ = true;
+  cancelled_ = true;
+}
+
+Runner::Snapshot Runner::snapshot() {
+  Snapshot now;
+  std::uint64_t revision;
+  std::shared_ptr<const RelaxationResult> shown;
+  {
+    const Lock lock(mutex_);
+    now.state = simulation_.state();
+    now.system = simulation_.system();
+    now.account = simulation_.begunAccount();
+    now.step_wall_time = step_wall_time_;
+    revision = simulation_.revision();
+    const ControlLock control(control_);
+    now.running = running_;
+    now.activity = activity_;
+    now.relax_progress = relax_progress_;
+    shown = shown_;
+  }
+  if (shown) {
+    now.state.positions = shown->positions;
+    now.state.angular_velocities.setZero();
+    now.state.dissipated = 0;
+  }
+  // Summing the energy of all springs may take long.
+  if (!now.account) {
+    now.account = std::make_shared<Account>(*now.system, now.state);
+    if (!shown) {
+      const Lock lock(mutex_);
+      now.account = simulation_.begin(now.account, revision);
+    }
+  }
+  return now;
+}
+
+SceneFile Runner::present() {
+  SceneFile now;
+  std::shared_ptr<const RelaxationResult> shown;
+  {
+    const Lock lock(mutex_);
+    now.scene = simulation_.presentScene();
+    now.time = simulation_.state().time;
+    const ControlLock control(control_);
+    shown = shown_;
+  }
+  if (shown) now.scene.place(shown->positions, Points::Zero(3, shown->positions.cols()));
+  return now;
+}
+
+}  // namespace spherical_springs::core

@@ -1,0 +1,227 @@
+#include <gtest/gtest.h>
+
+#include <future>
+#include <thread>
+
+#include "support/scenes.h"
+#include "simulation/runner.h"
+
+namespace spherical_springs::core {
+namespace {
+
+void fill(Runner& runner, const Scene& scene) {
+  runner.change([&](Simulation& s) {
+    s.addParticles(scene.particles().items());
+    s.addSprings(testing::springsOf(scene));
+  });
+}
+
+/// A runner in the middle of a relaxation or step that will not end by itself.
+class BusyRunner : public ::testing::TestWithParam<Activity> {
+ protected:
+  void SetUp() override {
+    fill(runner_, testing::randomScene(1, 100, 150));
+    work_ = std::async(std::launch::async, [this] {
+      if (GetParam() == Activity::stepping) {
+        runner_.step(~std::uint64_t(0));
+        return;
+      }
+      RelaxationOptions options;
+      options.method = RelaxationMethod::dynamics;
+      options.tolerance = 1e-300;
+      runner_.relax(options);
+    });
+    while (runner_.snapshot().activity == Activity::none) std::this_thread::yield();
+  }
+
+  Runner runner_{Simulation::Settings(), false};
+  std::future<void> work_;
+};
+INSTANTIATE_TEST_SUITE_P(Both, BusyRunner,
+                         ::testing::Values(Activity::stepping, Activity::relaxing));
+
+TEST_P(BusyRunner, AnswersReadersRefusesChangesAndEndsAtRest) {
+  EXPECT_EQ(runner_.read([](const Simulation& s) { return s.scene().particles().size(); }), 100);
+  EXPECT_THROW(runner_.change([](Simulation& s) { s.clear(); }), std::runtime_error);
+  EXPECT_THROW(runner_.setRunning(true), std::runtime_error);
+  EXPECT_THROW(runner_.step(1), std::runtime_error);
+  EXPECT_THROW(runner_.relax({}), std::runtime_error);
+  EXPECT_EQ(runner_.advance(10, 1), 0);
+  EXPECT_EQ(runner_.snapshot().activity, GetParam());
+
+  EXPECT_TRUE(runner_.cancel());
+  work_.get();
+  EXPECT_FALSE(runner_.cancel());
+  const auto end = runner_.snapshot();
+  EXPECT_EQ(end.activity, Activity::none);
+  EXPECT_TRUE(end.state.angular_velocities.isZero(0));
+  runner_.change([](Simulation& s) { s.clear(); });
+}
+
+TEST_P(BusyRunner, EndsWhenClosedAndBeginsNothingMore) {
+  runner_.close();
+  work_.get();
+  EXPECT_THROW(runner_.step(1), std::runtime_error);
+  EXPECT_THROW(runner_.relax({}), std::runtime_error);
+  EXPECT_EQ(runner_.read([](const Simulation& s) { return s.scene().particles().size(); }), 100);
+}
+
+TEST(Runner, StepsExactlyWhilePausedOnly) {
+  Runner runner({}, true);
+  EXPECT_THROW(runner.step(3), std::runtime_error);
+  runner.setRunning(false);
+  EXPECT_EQ(runner.step(3), 3);
+  EXPECT_EQ(runner.snapshot().state.steps, 3);
+  EXPECT_EQ(runner.advance(3, 1), 0);
+  runner.setRunning(true);
+  EXPECT_EQ(runner.advance(3, 1), 3);
+}
+
+TEST(Runner, GivesTheSameBitsWhateverReadsBeside) {
+  Points positions[2];
+  for (const bool read : {false, true}) {
+    Runner runner({}, false);
+    fill(runner, testing::randomScene(2, 100, 150, 0.1, 1));
+    std::atomic<bool> done{false};
+    std::thread reader([&] {
+      while (read && !done) runner.snapshot();
+    });
+    runner.step(500);
+    done = true;
+    reader.join();
+    positions[read] = runner.snapshot().state.positions;
+  }
+  EXPECT_EQ(positions[0], positions[1]);
+}
+
+/// Particles joined by many springs at random, which take long to relax.
+Scene knot(std::uint32_t particles) {
+  return testing::randomScene(6, particles, 3 * static_cast<int>(particles), 0, 0);
+}
+
+// A relaxation that is cancelled before its first iteration tells where the particles are.
+TEST(Runner, CancelledAtOnceTellsEnergyAndTorque) {
+  Runner runner({}, false);
+  fill(runner, knot(4000));
+  const auto start = runner.snapshot();
+  const double energy = energies(*start.system, start.state).potential();
+  const double torque = maxTorque(*start.system, start.state);
+  for (int i = 0; i < 6; ++i) {
+    auto answer = std::async(std::launch::async, [&] { return runner.relax({}); });
+    while (!runner.cancel()) std::this_thread::yield();
+    const RelaxationResult result = answer.get();
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.message.rfind("cancelled; largest torque", 0), 0) << result.message;
+    EXPECT_NEAR(result.energy_before, energy, 1e-9 * energy);
+    EXPECT_LE(result.energy_after, (1 + 1e-9) * energy);
+    EXPECT_GT(result.max_torque, 1e-6 * torque);
+    runner.change([](Simulation& s) { s.reset(); });
+  }
+}
+
+/// Whether no turn of the whole would bring `after` nearer to `before`.
+bool lieAsNearAsTheyCan(const Points& before, const Points& after) {
+  const Eigen::Matrix3d moments = after * before.transpose();
+  return (moments - moments.transpose()).norm() < 1e-9 * moments.norm();
+}
+
+TEST(Runner, DoesNotTurnTheWholeWhenCancelled) {
+  for (const auto method : {RelaxationMethod::newton, RelaxationMethod::dynamics}) {
+    Runner runner({}, false);
+    fill(runner, knot(300));
+    const Points start = runner.snapshot().state.positions;
+    RelaxationOptions options;
+    options.method = method;
+    options.tolerance = 1e-300;
+    auto answer = std::async(std::launch::async, [&] { return runner.relax(options); });
+    const auto moved = [&] {
+      return (runner.snapshot().state.positions - start).cwiseAbs().maxCoeff() > 0.1;
+    };
+    while (!moved()) std::this_thread::yield();
+    runner.cancel();
+    const RelaxationResult result = answer.get();
+    EXPECT_TRUE(lieAsNearAsTheyCan(start, result.positions)) << result.message;
+    EXPECT_EQ(runner.snapshot().state.positions, result.positions);
+  }
+}
+
+TEST(Runner, ShowsARelaxationUnderWayWithoutTouchingTheScene) {
+  Runner runner({}, false);
+  fill(runner, knot(300));
+  const Points start = runner.snapshot().state.positions;
+  RelaxationOptions options;
+  options.method = RelaxationMethod::dynamics;
+  options.tolerance = 1e-300;
+  auto answer = std::async(std::launch::async, [&] { return runner.relax(options); });
+  while (runner.snapshot().state.positions == start) std::this_thread::yield();
+  EXPECT_EQ(runner.read([](const Simulation& s) { return s.state().positions; }), start);
+  runner.cancel();
+  answer.get();
+}
+
+TEST(Simulation, ChangesOfNothingChangeNothing) {
+  Simulation simulation({});
+  const Scene random = testing::randomScene(7, 10, 10, 0.5, 1);
+  simulation.load({random, 0});
+  simulation.step(10);
+  const double dissipated = simulation.state().dissipated;
+  const auto account = simulation.account();
+  simulation.addParticles({});
+  simulation.setParticles({}, {});
+  simulation.removeParticles({});
+  simulation.addSprings({});
+  simulation.setSprings({}, {});
+  simulation.removeSprings({});
+  EXPECT_GT(dissipated, 0);
+  EXPECT_EQ(simulation.state().dissipated, dissipated);
+  EXPECT_EQ(simulation.account(), account);
+}
+
+TEST(Runner, ABadRequestToRelaxChangesNothing) {
+  Runner runner({}, false);
+  fill(runner, testing::randomScene(3, 10, 10, 0, 1));
+  runner.step(10);
+  const auto before = runner.snapshot();
+  RelaxationOptions options;
+  options.tolerance = -1;
+  EXPECT_THROW(runner.relax(options), std::invalid_argument);
+  const auto after = runner.snapshot();
+  EXPECT_EQ(before.state.angular_velocities, after.state.angular_velocities);
+  EXPECT_EQ(before.account, after.account);
+}
+
+TEST(Simulation, ResetGoesBackToWhereParticlesWereAddedOrSet) {
+  Simulation simulation({});
+  const Scene random = testing::randomScene(4, 5, 0, 0, 1);
+  simulation.addParticles(random.particles().items());
+  for (int i = 0; i < 100; ++i) simulation.step();
+  simulation.setParticles({1}, {testing::particleAt({0, 0, 1})});
+  for (int i = 0; i < 100; ++i) simulation.step();
+  simulation.removeParticles({0});
+  simulation.reset();
+  EXPECT_EQ(simulation.state().time, 0);
+  EXPECT_EQ(simulation.state().positions.col(0), Vector3(0, 0, 1));
+  EXPECT_EQ(simulation.state().positions.col(1), random.particles().item(2).position);
+  EXPECT_EQ(simulation.state().angular_velocities.col(1),
+            random.particles().item(2).angular_velocity);
+}
+
+TEST(Simulation, KeepsGoingFromWhereItIsWhenTheSceneChanges) {
+  Simulation simulation({});
+  const Scene random = testing::randomScene(5, 5, 0, 0, 1);
+  simulation.addParticles(random.particles().items());
+  for (int i = 0; i < 100; ++i) simulation.step();
+  const Points before = simulation.state().positions;
+  simulation.addParticles({testing::particleAt({0, 0, 1})});
+  EXPECT_EQ(simulation.state().positions.leftCols(5), before);
+  AngleSpring spring = testing::angleSpring(0, 1, 0);
+  spring.at_rest = true;
+  SpringLists springs;
+  springs.get<AngleSpring>() = {spring};
+  simulation.addSprings(springs);
+  EXPECT_EQ(simulation.scene().springs<AngleSpring>().item(0).rest_angle,
+            arc(before.col(0), before.col(1)).angle);
+}
+
+}  // namespace
+}  // namespace spherical_springs::core
