@@ -19,6 +19,17 @@ Vector3 direction(const Vector3& vector);
 /// One unit vector normal to the unit vector `p`, the same at every call.
 Vector3 perpendicular(const Vector3& p);
 
+/// Two unit vectors that make a right-handed frame with a point: columns x and y = p x x.
+using TangentFrame = Unaligned<double, 3, 2>;
+
+/// The frame at `p` whose x is `perpendicular(p)`.
+inline TangentFrame tangentFrame(const Vector3& p) {
+  TangentFrame frame;
+  frame.col(0) = perpendicular(p);
+  frame.col(1) = p.cross(frame.col(0));
+  return frame;
+}
+
 /// `a x b` of unit vectors from their difference and sum, which does not cancel where `a` and `b`
 /// are close or nearly antipodal.
 inline Vector3 crossOfUnits(const Vector3& a, const Vector3& b) {

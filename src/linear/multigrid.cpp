@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 namespace spherical_springs::core {
 namespace {
@@ -12,7 +13,7 @@ constexpr std::size_t kFewRows = 24;                        // solved at once
 /// Unsmoothed aggregates make the coarse matrix too stiff; D. Braess, Computing 55 (1995).
 constexpr double kOverCorrection = 1.8;
 
-/// Of a part of the diagonal, so that what no spring holds has an inverse too.
+/// Relative shift of the diagonal, which keeps a singular block invertible.
 template <class Real>
 constexpr Real kShift = std::is_same_v<Real, float> ? Real(1e-5) : Real(1e-9);
 
@@ -108,15 +109,10 @@ void GaussSeidel<Real, N>::backward(const VectorOf<Real>& b, VectorOf<Real>& x) 
 
 template <class Real>
 Multigrid<Real>::Multigrid(const BlockPattern& pattern, const Blocks<Real, 2>& values,
-                           const std::vector<TangentFrame>& frames, int threads)
+                           CoarseBasis<Real> basis, int threads)
     : threads_(threads),
-      turns_(pattern.rows()),
+      basis_(std::move(basis)),
       finest_{GaussSeidel<Real, 2>(pattern, values, threads), {}, {}} {
-  // A rotation vector w moves p by w x p, whose parts along x and y = p x x are w.y and -w.x.
-  parallelFor(pattern.rows(), threads, [&](std::ptrdiff_t i) {
-    turns_[i].row(0) = frames[i].col(1).template cast<Real>();
-    turns_[i].row(1) = -frames[i].col(0).template cast<Real>();
-  });
   if (pattern.rows() <= kFewRows) {
     coarsest_inverse_ = denseInverse<Real, 2>(pattern, values);
     return;
@@ -150,7 +146,7 @@ void Multigrid<Real>::addCoarser(const BlockPattern& pattern, const Blocks<Real,
         const std::uint32_t j = pattern.graph.neighbours[e];
         auto& sum = coarse->values[coarse->pattern.place(a, aggregation.aggregate[j])];
         if constexpr (N == 2) {
-          sum.template topRows<3>() += turns_[i].transpose() * (values[e] * turns_[j]);
+          sum.template topRows<3>() += basis_[i].transpose() * (values[e] * basis_[j]);
         } else {
           sum += values[e];
         }
@@ -195,7 +191,7 @@ void Multigrid<Real>::cycle(Level<N>& level, std::size_t coarser, const VectorOf
     for (std::uint32_t m = aggregation.first_member[a]; m < aggregation.first_member[a + 1]; ++m) {
       const std::uint32_t i = aggregation.members[m];
       if constexpr (N == 2) {
-        sum += turns_[i].transpose().lazyProduct(part<2>(level.residual, i));
+        sum += basis_[i].transpose().lazyProduct(part<2>(level.residual, i));
       } else {
         sum += part<3>(level.residual, i);
       }
@@ -205,12 +201,12 @@ void Multigrid<Real>::cycle(Level<N>& level, std::size_t coarser, const VectorOf
   visit(coarser);
   parallelFor(aggregation.aggregate.size(), threads_, [&](std::ptrdiff_t i) {
     if (aggregation.aggregate[i] == Aggregation::kNone) return;
-    const Eigen::Matrix<Real, 3, 1> turn =
+    const Eigen::Matrix<Real, 3, 1> coarse_part =
         Real(kOverCorrection) * part<3>(coarse.solution, aggregation.aggregate[i]);
     if constexpr (N == 2) {
-      part<2>(x, i) += turns_[i].lazyProduct(turn);
+      part<2>(x, i) += basis_[i].lazyProduct(coarse_part);
     } else {
-      part<3>(x, i) += turn;
+      part<3>(x, i) += coarse_part;
     }
   });
 

@@ -1,4 +1,4 @@
-// An approximate inverse of a Hessian on the sphere, by aggregation multigrid.
+// An approximate inverse of a matrix of 2 x 2 blocks, by aggregation multigrid.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +8,6 @@
 #include "linear/aggregation.h"
 #include "linear/block_matrix.h"
 #include "linear/preconditioner.h"
-#include "spherical_springs/springs/condition.h"
 
 namespace spherical_springs::core {
 
@@ -38,17 +37,20 @@ class GaussSeidel {
   int threads_;
 };
 
-/// One W-cycle with a Gauss-Seidel sweep before and the opposite one after. Coarse unknowns are
-/// rotation vectors of groups of particles, among them the rotations of the whole scene, for which
-/// the energy has no preference. As an operator it is linear, symmetric and, for a definite matrix,
-/// definite.
+/// For each row, the 2 x 3 matrix that takes the three unknowns of the row's aggregate to the two
+/// of the row. What these matrices make of one triple for all rows should be the vectors that the
+/// matrix hardly changes.
+template <class Real>
+using CoarseBasis = std::vector<Eigen::Matrix<Real, 2, 3>>;
+
+/// One W-cycle with a Gauss-Seidel sweep before and the opposite one after. As an operator it is
+/// linear, symmetric and, for a definite matrix, definite.
 template <class Real>
 class Multigrid : public Preconditioner<Real> {
  public:
-  /// `frames`: of the rows' particles, in which the matrix's unknowns are meant. The pattern and
-  /// the values must live longer.
-  Multigrid(const BlockPattern& pattern, const Blocks<Real, 2>& values,
-            const std::vector<TangentFrame>& frames, int threads);
+  /// The pattern and the values must live longer.
+  Multigrid(const BlockPattern& pattern, const Blocks<Real, 2>& values, CoarseBasis<Real> basis,
+            int threads);
 
   /// Coarse levels stay as they are. `values` must live longer.
   bool refresh(const Blocks<Real, 2>& values) override;
@@ -80,7 +82,7 @@ class Multigrid : public Preconditioner<Real> {
   void solveAt(std::size_t depth, const VectorOf<Real>& b, VectorOf<Real>& x);
 
   int threads_;
-  std::vector<Eigen::Matrix<Real, 2, 3>> turns_;  // from a rotation vector to a row's unknowns
+  CoarseBasis<Real> basis_;
   Level<2> finest_;
   std::vector<std::unique_ptr<CoarseMatrix>> matrices_;
   std::vector<Level<3>> levels_;  // of all coarse matrices but the last

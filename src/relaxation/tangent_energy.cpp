@@ -284,11 +284,20 @@ void TangentEnergy::addInertia(Curvature curvature) {
   }
 }
 
-std::vector<TangentFrame> TangentEnergy::frames() const {
-  std::vector<TangentFrame> result(freeCount());
-  for (std::size_t n = 0; n < freeCount(); ++n) result[n] = places_[n].frame;
+// A rotation vector w moves p by w x p, whose parts along x and y = p x x are w.y and -w.x.
+template <class Real>
+std::vector<Eigen::Matrix<Real, 2, 3>> TangentEnergy::rotations() const {
+  std::vector<Eigen::Matrix<Real, 2, 3>> result(freeCount());
+  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    const TangentFrame& frame = places_[n].frame;
+    result[n].row(0) = frame.col(1).template cast<Real>();
+    result[n].row(1) = -frame.col(0).template cast<Real>();
+  });
   return result;
 }
+
+template std::vector<Eigen::Matrix<float, 2, 3>> TangentEnergy::rotations() const;
+template std::vector<Eigen::Matrix<double, 2, 3>> TangentEnergy::rotations() const;
 
 double TangentEnergy::maxTorque() const {
   return unit_ * std::sqrt(parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {

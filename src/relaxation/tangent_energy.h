@@ -59,8 +59,10 @@ class TangentEnergy {
   double value() const { return value_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
-  /// Of the free particles.
-  std::vector<TangentFrame> frames() const;
+  /// For each free particle, the matrix that takes a rotation vector of the scene to the particle's
+  /// two unknowns.
+  template <class Real>
+  std::vector<Eigen::Matrix<Real, 2, 3>> rotations() const;
 
   /// What the quadratic model of the last evaluation promises of a step.
   double expectedDrop(const Eigen::VectorXd& step) const;

@@ -18,17 +18,6 @@ struct Condition {
   std::array<Vector3, N> gradient;
 };
 
-/// Two unit vectors that make a right-handed frame with a point: columns x and y = p x x.
-using TangentFrame = Unaligned<double, 3, 2>;
-
-/// The frame at `p` whose x is `perpendicular(p)`.
-inline TangentFrame tangentFrame(const Vector3& p) {
-  TangentFrame frame;
-  frame.col(0) = perpendicular(p);
-  frame.col(1) = p.cross(frame.col(0));
-  return frame;
-}
-
 /// Whether the second derivatives H of a condition C are exact; or tempered, exact but for arcs
 /// whose negative curvature would outweigh what others may give; or altered so that C H, and with
 /// it the spring's share of the energy's Hessian, stiffness (g g^T + C H), is positive
