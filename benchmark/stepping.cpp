@@ -64,7 +64,7 @@ Contender ours(const Scene& scene, IntegrationMethod method, int threads) {
   state.positions = benchmark_scenes::startOf(scene);
   state.angular_velocities = Points::Zero(3, state.positions.cols());
   const std::shared_ptr<Integrator> integrator =
-      makeIntegrator(std::make_shared<const System>(scene, options), method, kTimeStep);
+      makeIntegrator(std::make_shared<const Plan>(scene, options), method, kTimeStep);
   integrator->take(state);
   return {[integrator](int steps) { integrator->advance(steps); }};
 }

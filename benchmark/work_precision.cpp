@@ -137,14 +137,14 @@ struct Outcome {
 };
 
 Outcome stepped(const Case& c, IntegrationMethod method, double time_step, int steps) {
-  const auto system = std::make_shared<const System>(c.scene, System::Options());
+  const auto plan = std::make_shared<const Plan>(c.scene, System::Options());
   State state = stateOf(c.scene);
-  const double before = energies(*system, state).total();
-  const auto integrator = makeIntegrator(system, method, time_step);
+  const double before = energies(*plan, state).total();
+  const auto integrator = makeIntegrator(plan, method, time_step);
   const double begin = now();
   for (int i = 0; i < steps; ++i) integrator->step(state);
   const double wall_time = now() - begin;
-  const double after = energies(*system, state).total() + state.dissipated;
+  const double after = energies(*plan, state).total() + state.dissipated;
   return {state.positions, std::abs(after - before) / before, wall_time};
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "spherical_springs/plan.h"
 #include "spherical_springs/state.h"
-#include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 
@@ -27,8 +27,8 @@ int orderOf(IntegrationMethod method);
 /// implicit_euler.
 double stabilityLimit(IntegrationMethod method);
 
-/// Steps a state of its own: as it likes it best, until somebody reads it. The same steps give the
-/// same bits however they are cut into calls and whatever is read in between.
+/// Owns a copy of the state in a memory layout of its own; `give` converts it back. Equal numbers of
+/// steps give equal bits, however they are cut into calls and whatever is read in between.
 class Integrator {
  public:
   virtual ~Integrator() = default;
@@ -50,7 +50,7 @@ class Integrator {
 };
 
 /// `time_step`: [s], above 0.
-std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const System> system,
+std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const Plan> plan,
                                            IntegrationMethod method, double time_step);
 
 }  // namespace spherical_springs::core

@@ -19,12 +19,12 @@ struct Energies {
   double total() const { return kinetic + potential(); }
 };
 
-Energies energies(const System& system, const State& state);
+Energies energies(const Plan& plan, const State& state);
 
 /// What is conserved, and by how much it has changed since the account began. For many threads.
 class Account {
  public:
-  Account(const System& system, const State& state);
+  Account(const Plan& plan, const State& state);
 
   /// |total + dissipated - its value at the beginning| / the largest total since.
   double energyError(const Energies& now);
@@ -52,25 +52,21 @@ struct Measures {
   std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
 };
 
-Measures measure(const std::shared_ptr<const System>& system, IntegrationMethod method,
-                 double time_step, const State& state, Account& account);
+Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method, double time_step,
+                 const State& state, Account& account);
 
 /// Largest torque of the springs on a particle that is not pinned [N m].
-double maxTorque(const System& system, const State& state);
+double maxTorque(const Plan& plan, const State& state);
 
 /// max | |p| - 1 |
 double normError(const State& state);
-
-/// A bound of the highest frequency of small vibrations here [rad/s], by Gershgorin's circles of
-/// the Hessian's blocks; 0 where nothing vibrates, infinite where a stiffness overflows.
-double highestFrequency(const System& system, const Points& positions);
 
 /// The largest time step [s] that `method` bears here; infinite where nothing bounds it.
 double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions);
 
 /// Estimated error [rad] of one step from `state`, by the difference from two steps of half the
 /// length.
-double localError(const std::shared_ptr<const System>& system, IntegrationMethod method,
+double localError(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
                   double time_step, const State& state);
 
 }  // namespace spherical_springs::core

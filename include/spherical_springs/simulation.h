@@ -53,7 +53,7 @@ class Simulation {
   const State& state() const;
   Scene presentScene() const;  ///< with the particles where they are now
 
-  std::shared_ptr<const System> system();
+  std::shared_ptr<const Plan> plan();
   std::shared_ptr<Account> account();
 
   /// The account without making it: null until something has asked for it.
@@ -78,7 +78,7 @@ class Simulation {
   mutable bool integrator_is_ahead_ = false;  // of the state
   bool integrator_has_state_ = false;
   // Made when first needed after a change.
-  std::shared_ptr<const System> system_;
+  std::shared_ptr<const Plan> plan_;
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<Account> account_;
   std::uint64_t revision_ = 0;

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "spherical_springs/damping.h"
@@ -26,8 +25,6 @@ struct EnergyOf {
 struct PotentialEnergies : PerKind<EnergyOf> {
   double total() const;
 };
-
-class Layout;
 
 /// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
 /// of their ids, and springs name particles by index.
@@ -67,9 +64,6 @@ class System {
   const SpringList<Spring>& springs() const {
     return springs_.get<Spring>();
   }
-
-  /// Where stepping has particles and springs; made when first asked for, for any thread.
-  std::shared_ptr<const Layout> layout() const;
 
   /// What one evaluation at some positions leaves for the next use of it; reused to save memory.
   struct Workspace {
@@ -113,8 +107,6 @@ class System {
   // The ends of springs at each particle: those of particle i are at ends_[first_end_[i]] and on,
   // so that torques are summed in the same order however many threads do it.
   std::vector<std::uint32_t> first_end_, ends_;
-  struct LayoutOnDemand;
-  std::shared_ptr<LayoutOnDemand> layout_;
 };
 
 }  // namespace spherical_springs::core

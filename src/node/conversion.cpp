@@ -106,7 +106,7 @@ Energies toMessage(const core::Energies& energies) {
 }
 
 Energies energiesOf(const core::Runner::Snapshot& snapshot, const std::string& frame_id) {
-  Energies message = toMessage(core::energies(*snapshot.system, snapshot.state));
+  Energies message = toMessage(core::energies(*snapshot.plan, snapshot.state));
   message.header.stamp = ros::Time::now();
   message.header.frame_id = frame_id;
   message.time = snapshot.state.time;

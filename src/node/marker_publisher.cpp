@@ -34,7 +34,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle node, core::Runner& runner,
 }
 
 MarkerPublisher::Markers MarkerPublisher::markersOf(const core::Runner::Snapshot& moment) const {
-  const core::System& system = *moment.system;
+  const core::System& system = *moment.plan->system();
   const core::Points& positions = moment.state.positions;
   const double radius = parameters_.radius;
   return {particlesMarker(system, positions, radius), arcsMarker(system, positions, radius),
@@ -69,7 +69,7 @@ void MarkerPublisher::publishChanges() {
   if (!greeted_ || !rest_.isOver()) return;
   Rest::Work work(rest_);
   auto now = runner_.snapshot();
-  if (now.system == system_ && samePlaces(now.state.positions, positions_)) return;
+  if (now.plan == plan_ && samePlaces(now.state.positions, positions_)) return;
 
   Markers markers = markersOf(now);
   std::vector<Marker> changed;
@@ -85,14 +85,14 @@ void MarkerPublisher::publishChanges() {
 }
 
 void MarkerPublisher::remember(core::Runner::Snapshot&& moment, Markers&& markers) noexcept {
-  system_ = std::move(moment.system);
+  plan_ = std::move(moment.plan);
   positions_ = std::move(moment.state.positions);
   sent_ = std::move(markers);
 }
 
 void MarkerPublisher::forget(std::size_t marker) noexcept {
   sent_[marker] = Marker();
-  system_.reset();
+  plan_.reset();
 }
 
 MarkerArray MarkerPublisher::arrayOf(std::vector<Marker> markers) const {

@@ -46,8 +46,8 @@ class MarkerPublisher {
   std::mutex mutex_;
   bool greeted_ = false;  // anyone
   Markers sent_;          // the last ones that went to all; empty where some have not got the last
-  // The moment that they show; no system where some have not got the last.
-  std::shared_ptr<const core::System> system_;
+  // The moment that they show; no plan where some have not got the last.
+  std::shared_ptr<const core::Plan> plan_;
   core::Points positions_;
   Rest rest_;
 

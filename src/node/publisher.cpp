@@ -88,7 +88,7 @@ double Publisher::realTimeFactor(const core::State& state) {
 
 Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   const core::State& state = snapshot.state;
-  const core::System& system = *snapshot.system;
+  const core::System& system = *snapshot.plan->system();
   Report report;
   Status& message = report.status;
   message.header.stamp = ros::Time::now();
@@ -109,11 +109,11 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
 
   // What a step would do means nothing while a relaxation wants the processors.
   if (snapshot.activity != core::Activity::relaxing) {
-    measures_ = core::measure(snapshot.system, core::integrationMethod(parameters_.integrator),
+    measures_ = core::measure(snapshot.plan, core::integrationMethod(parameters_.integrator),
                               parameters_.time_step, state, *snapshot.account);
   }
   core::Measures measures = measures_;
-  measures.max_torque = core::maxTorque(*snapshot.system, state);
+  measures.max_torque = core::maxTorque(*snapshot.plan, state);
   message.stable_time_step = std::min(Parameters::kLongestTimeStep, measures.stable_time_step);
   message.local_error = measures.local_error;
   message.energy_error = measures.energy_error;

@@ -3,22 +3,19 @@
 #include <algorithm>
 
 #include "stepping/evaluation.h"
+#include "stepping/stability.h"
 
 namespace spherical_springs::core {
-namespace {
-
-constexpr IntegrationMethod kMethod = IntegrationMethod::verlet;
-
-}  // namespace
-
 DampedDynamics::DampedDynamics(const System& system, OrientationGuard* guard,
                                const TorqueLimit& limit)
-    : system_(std::shared_ptr<const System>(), &system), guard_(guard), limit_(limit) {}
+    : system_(system), guard_(guard), limit_(limit) {}
 
 void DampedDynamics::place(const Points& positions) {
+  const std::shared_ptr<const System> not_owned(std::shared_ptr<const System>(), &system_);
+  plan_ = std::make_shared<const Plan>(not_owned, positions);
   state_ = {};
   state_.positions = positions;
-  allowed_ = allowedTorques(*system_, positions, limit_);
+  allowed_ = allowedTorques(system_, positions, limit_);
   stop();
   measure();
   least_excess_ = excess_;
@@ -31,11 +28,11 @@ void DampedDynamics::stop() {
 }
 
 void DampedDynamics::measure() {
-  value_ = system_->potential(state_.positions).total();
-  const Evaluation here(*system_, state_.positions);
+  value_ = system_.potential(state_.positions).total();
+  const Evaluation here(*plan_, state_.positions);
   auto largest = here.largestTorque(allowed_);
   if (largest.excess <= 1 && limit_.isRelative()) {
-    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+    allowed_ = allowedTorques(system_, state_.positions, limit_);
     largest = here.largestTorque(allowed_);
   }
   max_torque_ = largest.torque;
@@ -45,8 +42,10 @@ void DampedDynamics::measure() {
 void DampedDynamics::chooseTimeStep() {
   constexpr double kShareOfStable = 0.5;
   constexpr double kLongest = 1e6;  // where nothing swings [s]
-  const double stable = stableTimeStep(*system_, kMethod, state_.positions);
-  integrator_ = makeIntegrator(system_, kMethod, std::min(kShareOfStable * stable, kLongest));
+  const SplittingScheme& verlet = splittingScheme(IntegrationMethod::verlet);
+  const double stable = verlet.stability_limit / highestFrequency(system_, state_.positions);
+  integrator_ = std::make_unique<BlockedSplitting>(plan_, verlet,
+                                                   std::min(kShareOfStable * stable, kLongest));
 }
 
 /// Cuts the last step, from `from`, to what the guard allows.
@@ -64,11 +63,11 @@ bool DampedDynamics::iterate() {
   constexpr std::uint64_t kPatience = 20000;  // steps without a smaller excess
   if (state_.steps % kStepLasts == 0) {
     chooseTimeStep();
-    allowed_ = allowedTorques(*system_, state_.positions, limit_);
+    allowed_ = allowedTorques(system_, state_.positions, limit_);
   }
   const Points from = state_.positions;
   integrator_->step(state_);
-  const double kinetic = system_->kinetic(state_.angular_velocities);
+  const double kinetic = system_.kinetic(state_.angular_velocities);
   if (kinetic < kinetic_) {
     state_.positions = from;
     stop();

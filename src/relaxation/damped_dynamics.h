@@ -4,9 +4,10 @@
 
 #include "relaxation/descent.h"
 #include "relaxation/orientation_guard.h"
-#include "spherical_springs/integrator.h"
-#include "spherical_springs/measures.h"
+#include "spherical_springs/plan.h"
+#include "spherical_springs/state.h"
 #include "relaxation/torque_limit.h"
+#include "stepping/blocked_splitting.h"
 
 namespace spherical_springs::core {
 
@@ -30,9 +31,10 @@ class DampedDynamics : public Descent {
   void stop();
   void measure();
 
-  std::shared_ptr<const System> system_;
+  const System& system_;
+  std::shared_ptr<const Plan> plan_;
   OrientationGuard* guard_;
-  std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<BlockedSplitting> integrator_;
   State state_;
   double value_ = 0, kinetic_ = 0;  // [J]
   double max_torque_ = 0;           // [N m]

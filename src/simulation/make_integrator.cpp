@@ -28,12 +28,12 @@ double stabilityLimit(IntegrationMethod method) {
   return splittingScheme(method).stability_limit;
 }
 
-std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const System> system,
+std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const Plan> plan,
                                            IntegrationMethod method, double time_step) {
   if (method == IntegrationMethod::implicit_euler) {
-    return std::make_unique<ImplicitEuler>(std::move(system), time_step);
+    return std::make_unique<ImplicitEuler>(plan->system(), time_step);
   }
-  return std::make_unique<BlockedSplitting>(system, splittingScheme(method), time_step);
+  return std::make_unique<BlockedSplitting>(std::move(plan), splittingScheme(method), time_step);
 }
 
 }  // namespace spherical_springs::core

@@ -182,7 +182,7 @@ Runner::~Runner() {
 
 std::shared_ptr<Runner::Work> Runner::beginning(const RelaxationOptions& options) {
   const Lock lock(mutex_);
-  return std::make_shared<Work>(simulation_.system(), simulation_.state().positions, options);
+  return std::make_shared<Work>(simulation_.plan()->system(), simulation_.state().positions, options);
 }
 
 /// Waits for the worker of a relaxation that was cancelled, which may be in the middle of an
@@ -268,7 +268,7 @@ Runner::Snapshot Runner::snapshot() {
   {
     const Lock lock(mutex_);
     now.state = simulation_.state();
-    now.system = simulation_.system();
+    now.plan = simulation_.plan();
     now.account = simulation_.begunAccount();
     now.step_wall_time = step_wall_time_;
     revision = simulation_.revision();
@@ -285,7 +285,7 @@ Runner::Snapshot Runner::snapshot() {
   }
   // Summing the energy of all springs may take long.
   if (!now.account) {
-    now.account = std::make_shared<Account>(*now.system, now.state);
+    now.account = std::make_shared<Account>(*now.plan, now.state);
     if (!shown) {
       const Lock lock(mutex_);
       now.account = simulation_.begin(now.account, revision);

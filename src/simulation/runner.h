@@ -81,7 +81,7 @@ class Runner {
   /// How things stand, to be measured at leisure without holding anything up.
   struct Snapshot {
     State state;  ///< of a relaxation under way, the best so far
-    std::shared_ptr<const System> system;
+    std::shared_ptr<const Plan> plan;
     std::shared_ptr<Account> account;
     bool running;
     Activity activity;

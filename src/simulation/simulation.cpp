@@ -47,7 +47,7 @@ State& Simulation::changeState() {
 
 void Simulation::changed() {
   changeState().dissipated = 0;
-  system_.reset();
+  plan_.reset();
   integrator_.reset();
   account_.reset();
 }
@@ -130,7 +130,7 @@ void Simulation::beginAt(State start) {
 void Simulation::step(std::uint64_t steps) {
   account();  // begins before anything moves
   if (!integrator_) {
-    integrator_ = makeIntegrator(system(), settings_.method, settings_.time_step);
+    integrator_ = makeIntegrator(plan(), settings_.method, settings_.time_step);
   }
   if (!integrator_has_state_) integrator_->take(state_);
   integrator_has_state_ = true;
@@ -160,13 +160,13 @@ Scene Simulation::presentScene() const {
   return present;
 }
 
-std::shared_ptr<const System> Simulation::system() {
-  if (!system_) system_ = std::make_shared<const System>(scene_, settings_.system);
-  return system_;
+std::shared_ptr<const Plan> Simulation::plan() {
+  if (!plan_) plan_ = std::make_shared<const Plan>(scene_, settings_.system);
+  return plan_;
 }
 
 std::shared_ptr<Account> Simulation::account() {
-  if (!account_) account_ = std::make_shared<Account>(*system(), state());
+  if (!account_) account_ = std::make_shared<Account>(*plan(), state());
   return account_;
 }
 

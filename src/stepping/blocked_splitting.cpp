@@ -1,5 +1,7 @@
 #include "stepping/blocked_splitting.h"
 
+#include <utility>
+
 namespace spherical_springs::core {
 namespace {
 
@@ -12,13 +14,12 @@ const SplittingScheme& schemeFor(const System& system, const SplittingScheme& sc
 
 }  // namespace
 
-BlockedSplitting::BlockedSplitting(const std::shared_ptr<const System>& system,
-                                   const SplittingScheme& scheme, double time_step,
-                                   const StepKernels& kernels)
-    : scheme_(schemeFor(*system, scheme, time_step)),
+BlockedSplitting::BlockedSplitting(std::shared_ptr<const Plan> plan, const SplittingScheme& scheme,
+                                   double time_step, const StepKernels& kernels)
+    : scheme_(schemeFor(*plan->system(), scheme, time_step)),
       time_step_(time_step),
-      depends_on_rates_(scheme.order > 2 && system->damping().hasDampers()),
-      motion_(system, system->layout(), kernels) {
+      depends_on_rates_(scheme.order > 2 && plan->system()->damping().hasDampers()),
+      motion_(std::move(plan), kernels) {
   prepare(scheme_);
   if (depends_on_rates_) prepare(splittingScheme(IntegrationMethod::verlet));
 }

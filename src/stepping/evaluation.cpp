@@ -10,33 +10,33 @@
 
 namespace spherical_springs::core {
 
-Evaluation::Evaluation(const System& system, const Points& positions, const StepKernels& kernels)
-    : system_(system),
-      layout_(system.layout()),
+Evaluation::Evaluation(const Plan& plan, const Points& positions, const StepKernels& kernels)
+    : system_(*plan.system()),
+      layout_(plan.layout()),
       kernels_(kernels),
-      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}),
-      scratches_(*layout_, mostElements(*layout_), threads()) {
+      positions_(layout_.rowCount(), Row{{1, 0, 0, 0}}),
+      scratches_(layout_, mostElements(layout_), threads()) {
   forEachPatch([&](std::size_t, const Patch& patch) {
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
       Eigen::Map<Vector3>(positions_[patch.first_row + i].values) =
-          positions.col(layout_->order()[patch.first_place + i]);
+          positions.col(layout_.order()[patch.first_place + i]);
     }
   });
-  forEachPatch([&](std::size_t, const Patch& patch) { layout_->welcomeGuests(patch, positions_); });
+  forEachPatch([&](std::size_t, const Patch& patch) { layout_.welcomeGuests(patch, positions_); });
 }
 
-int Evaluation::threads() const { return layout_->patches().size() > 1 ? system_.threads() : 1; }
+int Evaluation::threads() const { return layout_.patches().size() > 1 ? system_.threads() : 1; }
 
 template <class Work>
 void Evaluation::forEachPatch(const Work& work) const {
-  const auto& patches = layout_->patches();
+  const auto& patches = layout_.patches();
   forOnThreads(patches.size(), threads(), [&](std::ptrdiff_t p) {
     if (patches[p].particle_count > 0) work(p, patches[p]);
   });
 }
 
 PotentialEnergies Evaluation::potential() const {
-  std::vector<PotentialEnergies> of_patches(layout_->patches().size());
+  std::vector<PotentialEnergies> of_patches(layout_.patches().size());
   forEachPatch([&](std::size_t p, const Patch& patch) { of_patches[p] = potentialOf(patch); });
   PotentialEnergies sum;
   for (const PotentialEnergies& of_patch : of_patches) {
@@ -80,7 +80,7 @@ void Evaluation::addEnergies(const Patch& patch, Scratch& scratch,
                              PotentialEnergies& energies) const {
   const auto [begin, end] = patch.groups[kSort];
   if (begin == end) return;
-  const auto* const groups = std::get<kSort>(layout_->groups()).data() + begin;
+  const auto* const groups = std::get<kSort>(layout_.groups()).data() + begin;
   const Row* const positions = &positions_[patch.first_row];
   ElementEnergies added = {0, 0};
   const std::uint32_t hard_count = std::get<kSort>(kernels_.energies)(
@@ -99,7 +99,7 @@ void Evaluation::addEnergies(const Patch& patch, Scratch& scratch,
 }
 
 double Evaluation::maxTorque() const {
-  std::vector<double> of_patches(layout_->patches().size(), 0);
+  std::vector<double> of_patches(layout_.patches().size(), 0);
   forEachPatch([&](std::size_t p, const Patch& patch) {
     forEachTorque(patch, [&](std::uint32_t, double torque) {
       of_patches[p] = std::max(of_patches[p], torque);
@@ -109,7 +109,7 @@ double Evaluation::maxTorque() const {
 }
 
 Evaluation::LargestTorque Evaluation::largestTorque(const Eigen::VectorXd& allowed) const {
-  std::vector<LargestTorque> of_patches(layout_->patches().size());
+  std::vector<LargestTorque> of_patches(layout_.patches().size());
   forEachPatch([&](std::size_t p, const Patch& patch) {
     LargestTorque& largest = of_patches[p];
     forEachTorque(patch, [&](std::uint32_t particle, double torque) {
@@ -130,9 +130,9 @@ template <class Visit>
 void Evaluation::forEachTorque(const Patch& patch, const Visit& visit) const {
   const Row* const positions = &positions_[patch.first_row];
   const auto scratch = scratches_.lease(patch);
-  const Row* const forces = Forces(*layout_, kernels_).on(patch, positions, *scratch);
+  const Row* const forces = Forces(layout_, kernels_).on(patch, positions, *scratch);
   for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
-    const std::uint32_t particle = layout_->order()[patch.first_place + i];
+    const std::uint32_t particle = layout_.order()[patch.first_place + i];
     if (system_.pinned(particle)) continue;
     const Eigen::Map<const Vector3> position(positions[i].values), force(forces[i].values);
     const Vector3 torque = position.cross(force);

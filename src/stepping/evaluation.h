@@ -1,22 +1,20 @@
 // What springs hold and how they pull at some positions, several springs at a time.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "stepping/step_kernels.h"
 #include "stepping/layout.h"
 #include "stepping/scratch.h"
-#include "spherical_springs/system.h"
+#include "spherical_springs/plan.h"
 
 namespace spherical_springs::core {
 
-/// Results do not depend on the number of threads, to the last bit.
+/// The plan must live longer. Results do not depend on the number of threads, to the last bit.
 class Evaluation {
  public:
   /// `positions`: one column a particle, in the order of ids.
-  Evaluation(const System& system, const Points& positions,
-             const StepKernels& kernels = stepKernels());
+  Evaluation(const Plan& plan, const Points& positions, const StepKernels& kernels = stepKernels());
 
   PotentialEnergies potential() const;
 
@@ -42,7 +40,7 @@ class Evaluation {
   void forEachTorque(const Patch& patch, const Visit& visit) const;
 
   const System& system_;
-  const std::shared_ptr<const Layout> layout_;
+  const Layout& layout_;
   const StepKernels& kernels_;
   std::vector<Row> positions_;
   mutable ScratchPool scratches_;  // for many threads

@@ -6,35 +6,35 @@
 
 namespace spherical_springs::core {
 
-Motion::Motion(std::shared_ptr<const System> system, std::shared_ptr<const Layout> layout,
-               const StepKernels& kernels)
-    : system_(std::move(system)),
-      layout_(std::move(layout)),
+Motion::Motion(std::shared_ptr<const Plan> plan, const StepKernels& kernels)
+    : plan_(std::move(plan)),
+      system_(*plan_->system()),
+      layout_(plan_->layout()),
       kernels_(kernels),
-      forces_(*layout_, kernels),
-      threads_(layout_->patches().size() > 1 ? system_->threads() : 1),
-      scratches_(*layout_, mostElements(*layout_), threads_),
-      positions_(layout_->rowCount(), Row{{1, 0, 0, 0}}),
+      forces_(layout_, kernels),
+      threads_(layout_.patches().size() > 1 ? system_.threads() : 1),
+      scratches_(layout_, mostElements(layout_), threads_),
+      positions_(layout_.rowCount(), Row{{1, 0, 0, 0}}),
       moved_(positions_),
-      inverse_masses_(layout_->slotCount(), 0) {
-  for (auto& component : velocities_) component.assign(layout_->slotCount(), 0);
-  if (system_->damping().hasDampers()) {
-    damped_kick_ = std::make_unique<DampedKick>(*system_, *layout_, kernels.damping, threads_);
-  } else if (system_->damping().hasViscous()) {
-    dissipated_.assign(layout_->patches().size(), 0);
+      inverse_masses_(layout_.slotCount(), 0) {
+  for (auto& component : velocities_) component.assign(layout_.slotCount(), 0);
+  if (system_.damping().hasDampers()) {
+    damped_kick_ = std::make_unique<DampedKick>(system_, layout_, kernels.damping, threads_);
+  } else if (system_.damping().hasViscous()) {
+    dissipated_.assign(layout_.patches().size(), 0);
   }
-  for (const Patch& patch : layout_->patches()) {
+  for (const Patch& patch : layout_.patches()) {
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
       inverse_masses_[patch.first_slot + i] =
-          system_->inverseMasses()[layout_->order()[patch.first_place + i]];
+          system_.inverseMasses()[layout_.order()[patch.first_place + i]];
     }
   }
 }
 
 void Motion::take(const State& state) {
-  for (const Patch& patch : layout_->patches()) {
+  for (const Patch& patch : layout_.patches()) {
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
-      const std::uint32_t particle = layout_->order()[patch.first_place + i];
+      const std::uint32_t particle = layout_.order()[patch.first_place + i];
       for (int k = 0; k < 3; ++k) {
         positions_[patch.first_row + i].values[k] = state.positions(k, particle);
         velocities_[k][patch.first_slot + i] = state.angular_velocities(k, particle);
@@ -44,12 +44,12 @@ void Motion::take(const State& state) {
 }
 
 void Motion::give(State& state) const {
-  const auto count = static_cast<Eigen::Index>(layout_->order().size());
+  const auto count = static_cast<Eigen::Index>(layout_.order().size());
   state.positions.resize(3, count);
   state.angular_velocities.resize(3, count);
-  for (const Patch& patch : layout_->patches()) {
+  for (const Patch& patch : layout_.patches()) {
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
-      const std::uint32_t particle = layout_->order()[patch.first_place + i];
+      const std::uint32_t particle = layout_.order()[patch.first_place + i];
       for (int k = 0; k < 3; ++k) {
         state.positions(k, particle) = positions_[patch.first_row + i].values[k];
         state.angular_velocities(k, particle) = velocities_[k][patch.first_slot + i];
@@ -71,7 +71,7 @@ Particles Motion::particlesOf(const Patch& patch, const std::vector<Row>& positi
 
 template <class Work>
 void Motion::forEachPatch(const Work& work) {
-  const auto& patches = layout_->patches();
+  const auto& patches = layout_.patches();
   forOnThreads(patches.size(), threads_, [&](std::ptrdiff_t b) {
     if (patches[b].particle_count > 0) work(b, patches[b]);
   });
@@ -86,8 +86,8 @@ void Motion::drift(double duration) {
 void Motion::prepareKick(double kick) {
   if (damped_kick_ != nullptr) {
     damped_kick_->prepare(kick);
-  } else if (system_->damping().hasViscous()) {
-    viscous_flows_.prepare(kick, system_->damping(), *layout_);
+  } else if (system_.damping().hasViscous()) {
+    viscous_flows_.prepare(kick, system_.damping(), layout_);
   }
 }
 
@@ -100,7 +100,7 @@ double Motion::kickAndDrift(double kick, const Drifts& drifts) {
     positions_.swap(moved_);
     return taken;
   }
-  const bool damped = system_->damping().hasViscous();
+  const bool damped = system_.damping().hasViscous();
   const ViscousFlow* const viscous = damped ? &viscous_flows_.over(kick) : nullptr;
   forEachPatch([&](std::size_t b, const Patch& patch) {
     const auto scratch = scratches_.lease(patch);
@@ -117,7 +117,7 @@ double Motion::kickAndDrift(double kick, const Drifts& drifts) {
 
 const Row* Motion::forcesOn(const Patch& patch, Scratch& scratch) {
   fetch(patch);
-  layout_->welcomeGuests(patch, positions_);
+  layout_.welcomeGuests(patch, positions_);
   return forces_.on(patch, &positions_[patch.first_row], scratch);
 }
 
@@ -156,7 +156,7 @@ void Motion::driftPatch(Particles particles, const Drifts& drifts) const {
 
 double Motion::fastestRate() {
   forEachPatch([&](std::size_t b, const Patch& patch) {
-    layout_->welcomeGuests(patch, positions_);
+    layout_.welcomeGuests(patch, positions_);
     damped_kick_->takeGradients(b, &positions_[patch.first_row]);
   });
   return damped_kick_->fastestRate();

@@ -10,15 +10,14 @@
 #include "stepping/forces.h"
 #include "stepping/layout.h"
 #include "spherical_springs/state.h"
-#include "spherical_springs/system.h"
+#include "spherical_springs/plan.h"
 #include "stepping/viscous_flows.h"
 
 namespace spherical_springs::core {
 
 class Motion {
  public:
-  Motion(std::shared_ptr<const System> system, std::shared_ptr<const Layout> layout,
-         const StepKernels& kernels);
+  Motion(std::shared_ptr<const Plan> plan, const StepKernels& kernels);
 
   void take(const State& state);
   void give(State& state) const;  ///< positions and velocities, back in the order of ids
@@ -50,8 +49,9 @@ class Motion {
   void driftPatch(Particles particles, const Drifts& drifts) const;
   void fetch(const Patch& patch) const;
 
-  std::shared_ptr<const System> system_;
-  std::shared_ptr<const Layout> layout_;
+  const std::shared_ptr<const Plan> plan_;
+  const System& system_;
+  const Layout& layout_;
   const StepKernels& kernels_;
   Forces forces_;
   int threads_;

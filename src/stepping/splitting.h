@@ -1,9 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "stepping/plain_integrator.h"
+#include "spherical_springs/integrator.h"
 
 namespace spherical_springs::core {
 
@@ -23,24 +22,5 @@ const SplittingScheme& splittingScheme(IntegrationMethod method);
 /// within a step.
 const SplittingScheme& schemeUnderDamping(const SplittingScheme& scheme, double fastest_rate,
                                           double time_step);
-
-/// A splitting scheme one spring at a time, by the springs' own formulas: what the faster one is
-/// held to.
-class SplittingIntegrator : public PlainIntegrator {
- public:
-  SplittingIntegrator(std::shared_ptr<const System> system, const SplittingScheme& scheme,
-                      double time_step);
-
- private:
-  void stepOnce(State& state) override;
-  const SplittingScheme& schemeFor(const State& state);
-  void drift(double duration, State& state) const;
-  void kick(double duration, State& state);
-
-  std::shared_ptr<const System> system_;
-  const SplittingScheme& scheme_;
-  double time_step_;
-  System::Workspace workspace_;
-};
 
 }  // namespace spherical_springs::core

@@ -1,10 +1,8 @@
 #include "spherical_springs/system.h"
 
 #include <cmath>
-#include <mutex>
 
 #include "base/parallel.h"
-#include "stepping/layout.h"
 
 namespace spherical_springs::core {
 
@@ -14,20 +12,6 @@ double PotentialEnergies::total() const {
   return sum;
 }
 
-struct System::LayoutOnDemand {
-  std::once_flag made;
-  Points positions;  // until it is made
-  std::shared_ptr<const Layout> layout;
-};
-
-std::shared_ptr<const Layout> System::layout() const {
-  std::call_once(layout_->made, [this] {
-    layout_->layout = std::make_shared<const Layout>(*this, layout_->positions);
-    layout_->positions.resize(3, 0);
-  });
-  return layout_->layout;
-}
-
 System::System(const Scene& scene, Options options) : options_(options) {
   const auto& particles = scene.particles();
   const auto count = static_cast<Eigen::Index>(particles.size());
@@ -35,14 +19,11 @@ System::System(const Scene& scene, Options options) : options_(options) {
   inverse_masses_.resize(count);
   Values viscous(count);
   particle_ids_ = particles.ids();
-  layout_ = std::make_shared<LayoutOnDemand>();
-  layout_->positions.resize(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Particle& particle = particles.item(i);
     masses_[i] = particle.mass;
     inverse_masses_[i] = particle.pinned ? 0 : 1 / particle.mass;
     viscous[i] = particle.damping;
-    layout_->positions.col(i) = particle.position;
     any_pinned_ = any_pinned_ || particle.pinned;
   }
 

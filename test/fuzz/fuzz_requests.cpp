@@ -97,14 +97,14 @@ class Requests {
       return --iterations > 0;
     };
     const RelaxationResult result =
-        relax(*simulation_.system(), simulation_.state().positions, options);
+        relax(*simulation_.plan()->system(), simulation_.state().positions, options);
     fuzzing::requireUnitVectors(result.positions);
     fuzzing::require(std::isfinite(result.energy_before), "the energy before is finite");
     fuzzing::require(std::isfinite(result.max_torque), "the torque is finite");
     // Beside their rounding the torque decides what is better.
     constexpr double kRounding = 1e-13, kRoundingOfRest = 1e-28;  // of an energy; [rad^2] or [sr^2]
     const double most = (1 + kRounding) * result.energy_before +
-                        kRoundingOfRest * simulation_.system()->largestStiffness();
+                        kRoundingOfRest * simulation_.plan()->system()->largestStiffness();
     fuzzing::require(result.energy_after <= most, "the energy has not grown");
     simulation_.settle(result.positions);
   }

@@ -30,7 +30,7 @@ inline void requireSound(Simulation& simulation) {
   requireUnitVectors(state.positions);
   require(state.angular_velocities.allFinite(), "angular velocities are finite");
   require(std::isfinite(state.time), "time is finite");
-  const Energies now = energies(*simulation.system(), state);
+  const Energies now = energies(*simulation.plan(), state);
   require(std::isfinite(now.total()), "energies are finite");
   require(std::isfinite(now.dissipated), "the energy taken out is finite");
 }
@@ -38,7 +38,7 @@ inline void requireSound(Simulation& simulation) {
 /// Also of what ~status shows.
 inline void requireSoundMeasures(Simulation& simulation) {
   const auto settings = simulation.settings();
-  const Measures measures = measure(simulation.system(), settings.method, settings.time_step,
+  const Measures measures = measure(simulation.plan(), settings.method, settings.time_step,
                                     simulation.state(), *simulation.account());
   require(!std::isnan(measures.stable_time_step), "the stable time step is a number");
   for (const double value :

@@ -332,9 +332,9 @@ TEST_F(ShortMemoryTest, LeavesSamplesOut) {
   Node node(directory_.path());
   expectBadAllocUntilItWorks([&] {
     const auto now = node.runner.snapshot();
-    particlesMarker(*now.system, now.state.positions, 1);
-    arcsMarker(*now.system, now.state.positions, 1);
-    trianglesMarker(*now.system, now.state.positions, 1);
+    particlesMarker(*now.plan->system(), now.state.positions, 1);
+    arcsMarker(*now.plan->system(), now.state.positions, 1);
+    trianglesMarker(*now.plan->system(), now.state.positions, 1);
   });
   expectBadAllocUntilItWorks([&] {
     const auto now = node.runner.snapshot();

@@ -72,7 +72,7 @@ TEST_P(Equilibrium, RelaxedAgainChangesNothing) {
     Relaxer relaxer;
     const auto relaxOnce = [&] {
       const auto result =
-          relaxer.relax(*simulation.system(), simulation.state().positions, options());
+          relaxer.relax(*simulation.plan()->system(), simulation.state().positions, options());
       simulation.settle(result.positions);
       return result;
     };
@@ -85,7 +85,7 @@ TEST_P(Equilibrium, RelaxedAgainChangesNothing) {
     EXPECT_EQ(simulation.state().positions, once) << seed;
     EXPECT_EQ(simulation.account(), account);
     // Nor by one that knows nothing of the first.
-    const auto anew = relax(*simulation.system(), once, options());
+    const auto anew = relax(*simulation.plan()->system(), once, options());
     EXPECT_TRUE(anew.converged) << anew.message;
     EXPECT_EQ(anew.positions, once) << seed;
   }

@@ -114,7 +114,7 @@ TEST_P(HardCases, StaySoundAndMakeNoEnergy) {
     SCOPED_TRACE(hard.name);
     const Trajectory start(hard.scene, GetParam(), 1, 0);
     const double stable =
-        stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+        stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
     const double step = std::min(0.02 * stable, 0.01);
     const int steps = method == IntegrationMethod::implicit_euler ? 200 : 1000;
     const Trajectory once(hard.scene, GetParam(), step, steps);
@@ -132,7 +132,7 @@ TEST_P(HardCases, StayFiniteBeyondTheStableStep) {
     SCOPED_TRACE(hard.name);
     const Trajectory start(hard.scene, GetParam(), 1, 0);
     const double stable =
-        stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+        stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
     for (const double factor : {1.5, 1e3}) {
       expectSound(Trajectory(hard.scene, GetParam(), std::min(factor * stable, 1e6), 50).state);
     }
@@ -167,10 +167,10 @@ TEST(InvertedOctant, NoParticleIsFasterThanTheEnergyAllows) {
   const double mass = 1;
   for (const SpringLists& springs : {threeArcs(), threeOrientedArcs()}) {
     const Scene scene = sceneOf({{1, 0.1, 0.02}, {0.05, 0.1, 1}, {0.1, 1, -0.05}}, springs);
-    const auto system = std::make_shared<const System>(scene, System::Options());
-    const auto integrator = makeIntegrator(system, IntegrationMethod::verlet, 1e-3);
+    const auto plan = std::make_shared<const Plan>(scene, System::Options());
+    const auto integrator = makeIntegrator(plan, IntegrationMethod::verlet, 1e-3);
     State state = testing::stateOf(scene);
-    const double allowed = std::sqrt(2 * energies(*system, state).total() / mass);
+    const double allowed = std::sqrt(2 * energies(*plan, state).total() / mass);
     for (int i = 0; i < 20000; ++i) {
       integrator->step(state);
       ASSERT_LT(state.angular_velocities.colwise().norm().maxCoeff(), 1.001 * allowed) << i;
@@ -185,7 +185,7 @@ TEST(ImplicitEuler, TakesEnergyOutAtAThousandTimesTheStableStep) {
   const Scene scene = sceneOf({{1, 0.15, 0.05}, {0.9, 0.5, 0.1}, {0.9, 0.1, 0.5}}, springs);
   const Trajectory start(scene, "implicit_euler", 1, 0);
   const double step =
-      1e3 * stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+      1e3 * stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
   const Trajectory end(scene, "implicit_euler", step, 100);
   expectSound(end.state);
   EXPECT_EQ(end.state.unconverged_steps, 0);
@@ -195,16 +195,16 @@ TEST(ImplicitEuler, TakesEnergyOutAtAThousandTimesTheStableStep) {
 TEST(ImplicitEuler, MakesNoEnergyWhereTheSpringsAreNotConvex) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Scene scene = testing::randomScene(seed, 8, 10, 0, 3);
-    const auto system = std::make_shared<const System>(scene, System::Options());
+    const auto plan = std::make_shared<const Plan>(scene, System::Options());
     State state = testing::stateOf(scene);
-    const double stable = stableTimeStep(*system, IntegrationMethod::verlet, state.positions);
+    const double stable = stableTimeStep(*plan->system(), IntegrationMethod::verlet, state.positions);
     for (const double factor : {0.3, 3., 30.}) {
       const auto integrator =
-          makeIntegrator(system, IntegrationMethod::implicit_euler, factor * stable);
+          makeIntegrator(plan, IntegrationMethod::implicit_euler, factor * stable);
       for (int i = 0; i < 30; ++i) {
-        const double before = energies(*system, state).total();
+        const double before = energies(*plan, state).total();
         integrator->step(state);
-        ASSERT_LE(energies(*system, state).total(), before * (1 + 1e-12)) << seed << " " << factor;
+        ASSERT_LE(energies(*plan, state).total(), before * (1 + 1e-12)) << seed << " " << factor;
       }
     }
   }
@@ -236,9 +236,9 @@ TEST(ImplicitEuler, OfImpossibleSpringsStaysSound) {
 TEST(Measures, WarnBeforeAnyoneHasToWonder) {
   const Scene scene = testing::randomScene(1, 8, 10);
   const Trajectory start(scene, "verlet", 1, 0);
-  Account account(*start.system, start.state);
+  Account account(*start.plan, start.state);
   const auto warning = [&](double time_step, const State& state) {
-    return measure(start.system, IntegrationMethod::verlet, time_step, state, account).warning;
+    return measure(start.plan, IntegrationMethod::verlet, time_step, state, account).warning;
   };
   EXPECT_EQ(warning(1e-4, start.state), "");
   EXPECT_NE(warning(10, start.state).find("above the stable one"), std::string::npos);

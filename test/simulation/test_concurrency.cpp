@@ -71,11 +71,11 @@ TEST_P(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
   // A topic and the status.
   keepCalling([this] {
     const auto now = runner_.snapshot();
-    measure(now.system, IntegrationMethod::verlet, 1e-3, now.state, *now.account);
+    measure(now.plan, IntegrationMethod::verlet, 1e-3, now.state, *now.account);
   });
   keepCalling([this] {
     const auto now = runner_.snapshot();
-    ASSERT_TRUE(std::isfinite(energies(*now.system, now.state).total()));
+    ASSERT_TRUE(std::isfinite(energies(*now.plan, now.state).total()));
   });
   // The timer.
   keepCalling([this] { runner_.advance(GetParam().steps, 0.01); });

@@ -104,8 +104,8 @@ TEST(Runner, CancelledAtOnceTellsEnergyAndTorque) {
   Runner runner({}, false);
   fill(runner, knot(4000));
   const auto start = runner.snapshot();
-  const double energy = energies(*start.system, start.state).potential();
-  const double torque = maxTorque(*start.system, start.state);
+  const double energy = energies(*start.plan, start.state).potential();
+  const double torque = maxTorque(*start.plan, start.state);
   for (int i = 0; i < 6; ++i) {
     auto answer = std::async(std::launch::async, [&] { return runner.relax({}); });
     while (!runner.cancel()) std::this_thread::yield();

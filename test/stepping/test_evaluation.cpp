@@ -17,8 +17,8 @@ namespace {
 using testing::solidAngleSpring;
 using testing::stepKernelsHere;
 
-System systemOf(const Scene& scene, int threads = 1) {
-  return System(scene, {SpringDamping::relative, threads});
+std::shared_ptr<const Plan> planOf(const Scene& scene, int threads = 1) {
+  return std::make_shared<const Plan>(scene, System::Options{SpringDamping::relative, threads});
 }
 
 /// Arcs and triangles at the edges of their formulas, and an oriented arc with a sharp step.
@@ -57,11 +57,12 @@ std::vector<Scene> scenes() {
 
 TEST(Evaluation, OfEnergiesIsThatOfOneSpringAtATime) {
   for (const Scene& scene : scenes()) {
-    const System system = systemOf(scene);
+    const auto plan = planOf(scene);
+    const System& system = *plan->system();
     const Points positions = testing::positionsOf(scene);
     const PotentialEnergies expected = system.potential(positions);
     for (const StepKernels* kernels : stepKernelsHere()) {
-      const PotentialEnergies result = Evaluation(system, positions, *kernels).potential();
+      const PotentialEnergies result = Evaluation(*plan, positions, *kernels).potential();
       forEachKind([&](auto kind) {
         using Spring = typename decltype(kind)::type;
         const double joules = expected.get<Spring>().joules;
@@ -73,7 +74,8 @@ TEST(Evaluation, OfEnergiesIsThatOfOneSpringAtATime) {
 
 TEST(Evaluation, OfTheLargestTorqueIsThatOfOneSpringAtATime) {
   for (const Scene& scene : scenes()) {
-    const System system = systemOf(scene);
+    const auto plan = planOf(scene);
+    const System& system = *plan->system();
     const Points positions = testing::positionsOf(scene);
     System::Workspace workspace;
     system.evaluate(positions, workspace);
@@ -82,7 +84,7 @@ TEST(Evaluation, OfTheLargestTorqueIsThatOfOneSpringAtATime) {
       if (!system.pinned(i)) expected = std::max(expected, workspace.torques.col(i).norm());
     }
     for (const StepKernels* kernels : stepKernelsHere()) {
-      EXPECT_NEAR(Evaluation(system, positions, *kernels).maxTorque(), expected, 1e-12 * expected);
+      EXPECT_NEAR(Evaluation(*plan, positions, *kernels).maxTorque(), expected, 1e-12 * expected);
     }
   }
 }
@@ -103,33 +105,34 @@ TEST(Evaluation, OfTheLargestTorqueIsFiniteWhereItsSquareOverflows) {
 
 TEST(Evaluation, LeavesTorquesOnPinsOut) {
   const Scene scene = testing::membraneScene(1);
-  const double all = maxTorque(systemOf(scene), testing::stateOf(scene));
+  const double all = maxTorque(*planOf(scene), testing::stateOf(scene));
   std::vector<std::uint32_t> pins(scene.particles().size() - 1);
   std::iota(pins.begin(), pins.end(), 0);
   const Scene pinned = testing::pinnedScene(scene, pins);
-  EXPECT_LT(maxTorque(systemOf(pinned), testing::stateOf(pinned)), all);
+  EXPECT_LT(maxTorque(*planOf(pinned), testing::stateOf(pinned)), all);
   pins.push_back(static_cast<std::uint32_t>(pins.size()));
   const Scene stuck = testing::pinnedScene(scene, pins);
-  EXPECT_EQ(maxTorque(systemOf(stuck), testing::stateOf(stuck)), 0);
+  EXPECT_EQ(maxTorque(*planOf(stuck), testing::stateOf(stuck)), 0);
 }
 
 TEST(Evaluation, GivesTheSameBitsOnAnyNumberOfThreads) {
   const Scene scene = testing::membraneScene(5);
   const Points positions = testing::positionsOf(scene);
-  const System one = systemOf(scene);
+  const auto one = planOf(scene);
   for (const int threads : {2, 3, 7}) {
-    const System many = systemOf(scene, threads);
-    EXPECT_EQ(Evaluation(many, positions).potential().total(),
-              Evaluation(one, positions).potential().total());
-    EXPECT_EQ(Evaluation(many, positions).maxTorque(), Evaluation(one, positions).maxTorque());
+    const auto many = planOf(scene, threads);
+    EXPECT_EQ(Evaluation(*many, positions).potential().total(),
+              Evaluation(*one, positions).potential().total());
+    EXPECT_EQ(Evaluation(*many, positions).maxTorque(), Evaluation(*one, positions).maxTorque());
   }
 }
 
 TEST(Evaluation, IsOfThePositionsGivenNotOfThoseOfTheLayout) {
   const Scene scene = testing::membraneScene(2);
-  const System system = systemOf(scene);
+  const auto plan = planOf(scene);
+    const System& system = *plan->system();
   const Points positions = testing::positionsOf(testing::membraneScene(2, 5));
-  EXPECT_NEAR(Evaluation(system, positions).potential().total(),
+  EXPECT_NEAR(Evaluation(*plan, positions).potential().total(),
               system.potential(positions).total(), 1e-13 * system.potential(positions).total());
 }
 

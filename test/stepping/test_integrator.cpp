@@ -193,8 +193,8 @@ TEST_P(Scheme, ConservesAngularMomentumWithRelativeSpringDamping) {
   if (std::string(GetParam()) == "implicit_euler") GTEST_SKIP() << "conserves it to first order";
   const Scene scene = testing::randomScene(5, 8, 10, 0.3, 0.5);
   const Trajectory start(scene, GetParam(), 1e-3, 0), end(scene, GetParam(), 1e-3, 2000);
-  const Vector3 change = end.system->angularMomentum(end.state.angular_velocities) -
-                         start.system->angularMomentum(start.state.angular_velocities);
+  const Vector3 change = end.system().angularMomentum(end.state.angular_velocities) -
+                         start.system().angularMomentum(start.state.angular_velocities);
   EXPECT_LT(change.norm(), 1e-12);
   EXPECT_GT(end.state.dissipated, 0.1);
 }
@@ -216,7 +216,7 @@ TEST_P(Scheme, GivesTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.state.positions, both.state.positions);
   EXPECT_EQ(one.state.angular_velocities, both.state.angular_velocities);
   EXPECT_EQ(one.state.dissipated, both.state.dissipated);
-  EXPECT_EQ(energies(*one.system, one.state).total(), energies(*both.system, both.state).total());
+  EXPECT_EQ(energies(*one.plan, one.state).total(), energies(*both.plan, both.state).total());
 }
 
 TEST_P(Scheme, NeverMovesPinnedParticles) {
@@ -237,7 +237,7 @@ TEST_P(Scheme, BearsAnyDamping) {
   particles[0].damping = 1e12;
   scene.setParticles(scene.particles().ids(), particles);
   const Trajectory start(scene, GetParam(), 1e-2, 0), end(scene, GetParam(), 1e-2, 500);
-  EXPECT_LE(energies(*end.system, end.state).total(), energies(*start.system, start.state).total());
+  EXPECT_LE(energies(*end.plan, end.state).total(), energies(*start.plan, start.state).total());
   EXPECT_TRUE(end.state.positions.allFinite());
 }
 
@@ -246,12 +246,12 @@ TEST_P(Scheme, LocalErrorIsWithinAFactorOf3) {
     const Scene scene = reportScene(seed, 0.1);
     const Trajectory start(scene, GetParam(), 1, 0);
     const double step =
-        0.1 * stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+        0.1 * stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
     const Trajectory one(scene, GetParam(), step, 1);
     const Trajectory exact(scene, "fourth_order", step / 64, 64);
     const double error = largestDistance(one.state.positions, exact.state.positions);
     const double estimate =
-        localError(start.system, integrationMethod(GetParam()), step, start.state);
+        localError(start.plan, integrationMethod(GetParam()), step, start.state);
     EXPECT_GT(estimate, error / 3) << seed;
     EXPECT_LT(estimate, error * 3) << seed;
   }

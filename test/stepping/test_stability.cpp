@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meshes.h"
+#include "stepping/stability.h"
 #include "support/scenes.h"
 #include "support/trajectory.h"
 
@@ -31,7 +32,7 @@ TEST(StableTimeStep, Holds) {
       const Scene scene = testing::sceneOf(particles, arcs({angleSpring(0, 1, rest)}));
       const Trajectory start(scene, method, 1, 0);
       const double stable =
-          stableTimeStep(*start.system, integrationMethod(method), start.state.positions);
+          stableTimeStep(start.system(), integrationMethod(method), start.state.positions);
       const Trajectory end(scene, method, 0.95 * stable, 10000);
       EXPECT_LT(end.conserved(), 20 * start.conserved()) << method;
       const Trajectory beyond(scene, method, 2.2 * stable, 1000);
@@ -80,7 +81,7 @@ Scene mesh() {
 TEST(StableTimeStep, OfAMeshHoldsAndIsWithinAFactorOf2) {
   const Trajectory start(mesh(), "verlet", 1, 0);
   const double stable =
-      stableTimeStep(*start.system, IntegrationMethod::verlet, start.state.positions);
+      stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
   const double energy = start.conserved();
   EXPECT_LT(Trajectory(mesh(), "verlet", 0.95 * stable, 5000).conserved(), 2 * energy);
   EXPECT_GT(Trajectory(mesh(), "verlet", 2 * stable, 500).conserved(), 100 * energy);
@@ -94,14 +95,14 @@ TEST(LongRun, KeepsEnergyAndAngularMomentum) {
                        threeArcs());
   for (const char* method : {"euler", "verlet", "fourth_order"}) {
     const Trajectory start(scene, method, 1e-2, 0);
-    Account account(*start.system, start.state);
+    Account account(*start.plan, start.state);
     const Trajectory early(scene, method, 1e-2, 10000);
     const Trajectory end(scene, method, 1e-2, 1000000);
-    const Vector3 momentum = end.system->angularMomentum(end.state.angular_velocities);
+    const Vector3 momentum = end.system().angularMomentum(end.state.angular_velocities);
     EXPECT_LT(momentum.norm(), 1e-12) << method;
     const double bound = std::pow(10, -2 * orderOf(integrationMethod(method)));
-    EXPECT_LT(account.energyError(energies(*early.system, early.state)), bound);
-    EXPECT_LT(account.energyError(energies(*end.system, end.state)), bound);
+    EXPECT_LT(account.energyError(energies(*early.plan, early.state)), bound);
+    EXPECT_LT(account.energyError(energies(*end.plan, end.state)), bound);
     expectSound(end.state);
   }
 }
@@ -159,7 +160,7 @@ TEST(LongRun, OfAThousandParticlesStaysSound) {
   const Trajectory start(scene, "verlet", 0.1, 0);
   const Trajectory end(scene, "verlet", 0.1, 1000000);
   EXPECT_NEAR(end.conserved(), start.conserved(), 0.02 * start.conserved());
-  EXPECT_LT(end.system->angularMomentum(end.state.angular_velocities).norm(), 1e-12);
+  EXPECT_LT(end.system().angularMomentum(end.state.angular_velocities).norm(), 1e-12);
   expectSound(end.state);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "reference/splitting_integrator.h"
 #include "stepping/blocked_splitting.h"
 #include "support/relaxation_scenes.h"
 #include "support/step_levels.h"
@@ -71,12 +72,12 @@ std::vector<Scene> dampedScenes() {
   return result;
 }
 
-std::shared_ptr<const System> systemOf(const Scene& scene, int threads = 1,
-                                       SpringDamping spring_damping = SpringDamping::relative) {
+std::shared_ptr<const Plan> planOf(const Scene& scene, int threads = 1,
+                                   SpringDamping spring_damping = SpringDamping::relative) {
   System::Options options;
   options.threads = threads;
   options.spring_damping = spring_damping;
-  return std::make_shared<const System>(scene, options);
+  return std::make_shared<const Plan>(scene, options);
 }
 
 State stepped(Integrator& integrator, const Scene& scene, int steps) {
@@ -104,12 +105,12 @@ TEST(Stepping, IsThatOfOneSpringAtATime) {
   for (const double damping : {0., 0.5}) {
     for (const Scene& undamped : scenes()) {
       const Scene scene = withViscousDamping(undamped, damping);
-      const auto system = systemOf(scene);
+      const auto plan = planOf(scene);
       for (const IntegrationMethod method : kMethods) {
-        SplittingIntegrator plain(system, splittingScheme(method), 1e-3);
+        testing::SplittingIntegrator plain(plan->system(), splittingScheme(method), 1e-3);
         const State expected = stepped(plain, scene, 3);
         for (const StepKernels* kernels : stepKernelsHere()) {
-          BlockedSplitting blocked(system, splittingScheme(method), 1e-3, *kernels);
+          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, *kernels);
           const State result = stepped(blocked, scene, 3);
           EXPECT_LT(difference(result, expected), 1e-13);
           EXPECT_NEAR(result.dissipated, expected.dissipated, 1e-13 * expected.dissipated);
@@ -124,7 +125,7 @@ TEST(Stepping, IsThatOfOneSpringAtATime) {
 class DampedStepping : public ::testing::TestWithParam<SpringDamping> {
  protected:
   State stepped(const Scene& scene, IntegrationMethod method, double step, int steps) const {
-    const auto integrator = makeIntegrator(systemOf(scene, 1, GetParam()), method, step);
+    const auto integrator = makeIntegrator(planOf(scene, 1, GetParam()), method, step);
     return core::stepped(*integrator, scene, steps);
   }
 };
@@ -135,16 +136,16 @@ TEST_P(DampedStepping, IsThatOfOneSpringAtATime) {
   for (const double viscous : {0., 0.1}) {
     for (const Scene& undamped : scenes()) {
       const Scene scene = withDampedSprings(withViscousDamping(undamped, viscous), 0.01);
-      const auto system = systemOf(scene, 1, GetParam());
+      const auto plan = planOf(scene, 1, GetParam());
       for (const IntegrationMethod method : kMethods) {
-        SplittingIntegrator plain(system, splittingScheme(method), 1e-3);
+        testing::SplittingIntegrator plain(plan->system(), splittingScheme(method), 1e-3);
         const State expected = core::stepped(plain, scene, 3);
         for (const StepKernels* kernels : stepKernelsHere()) {
-          BlockedSplitting blocked(system, splittingScheme(method), 1e-3, *kernels);
+          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, *kernels);
           const State result = core::stepped(blocked, scene, 3);
           EXPECT_LT(difference(result, expected), 1e-13);
           EXPECT_NEAR(result.dissipated, expected.dissipated,
-                      1e-14 * system->kinetic(expected.angular_velocities));
+                      1e-14 * plan->system()->kinetic(expected.angular_velocities));
         }
       }
     }
@@ -155,7 +156,7 @@ TEST_P(DampedStepping, IsThatOfOneSpringAtATime) {
 TEST_P(DampedStepping, BySweepsHasTheSameLimit) {
   Scene scene = withViscousDamping(testing::randomScene(3, 1500, 1500, 0, 1), 5);
   scene = withDampedSprings(scene, 5);
-  SplittingIntegrator plain(systemOf(scene, 1, GetParam()),
+  testing::SplittingIntegrator plain(planOf(scene, 1, GetParam())->system(),
                             splittingScheme(IntegrationMethod::verlet), 1. / 2048);
   const State exact = core::stepped(plain, scene, 128);
   const auto error = [&](int steps) {
@@ -174,10 +175,10 @@ TEST_P(DampedStepping, TakesOutExactlyWhatItSays) {
       for (auto& spring : springs.get<typename decltype(kind)::type>()) spring.stiffness = 1e-30;
     });
     scene = testing::sceneOf(scene.particles().items(), springs);
-    const auto system = systemOf(scene, 1, GetParam());
+    const auto plan = planOf(scene, 1, GetParam());
     const State end = stepped(scene, IntegrationMethod::euler, 0.01, 1);
-    const double before = system->kinetic(stateOf(scene).angular_velocities);
-    const double after = system->kinetic(end.angular_velocities);
+    const double before = plan->system()->kinetic(stateOf(scene).angular_velocities);
+    const double after = plan->system()->kinetic(end.angular_velocities);
     EXPECT_GT(end.dissipated, 0);
     EXPECT_NEAR(before - after, end.dissipated, 1e-13 * before) << damping;
   }
@@ -197,8 +198,8 @@ TEST_P(DampedStepping, DoesNotDampHardSpringsOtherwise) {
     particles.back().angular_velocity = p.cross(Vector3(0.1, 0.2, -0.3));
   }
   const Scene scene = testing::sceneOf(particles, springs);
-  const auto system = systemOf(scene, 1, GetParam());
-  SplittingIntegrator plain(system, splittingScheme(IntegrationMethod::euler), 1e-3);
+  const auto plan = planOf(scene, 1, GetParam());
+  testing::SplittingIntegrator plain(plan->system(), splittingScheme(IntegrationMethod::euler), 1e-3);
   EXPECT_LT(
       difference(stepped(scene, IntegrationMethod::euler, 1e-3, 1), core::stepped(plain, scene, 1)),
       1e-15);
@@ -207,10 +208,10 @@ TEST_P(DampedStepping, DoesNotDampHardSpringsOtherwise) {
 TEST(Stepping, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const Scene& scene : dampedScenes()) {
     for (const IntegrationMethod method : kMethods) {
-      const State one = stepped(*makeIntegrator(systemOf(scene, 1), method, 1e-3), scene, 5);
+      const State one = stepped(*makeIntegrator(planOf(scene, 1), method, 1e-3), scene, 5);
       for (const int threads : {2, 3, 7}) {
         expectSameBits(one,
-                       stepped(*makeIntegrator(systemOf(scene, threads), method, 1e-3), scene, 5));
+                       stepped(*makeIntegrator(planOf(scene, threads), method, 1e-3), scene, 5));
       }
     }
   }
@@ -220,8 +221,8 @@ TEST(Stepping, GivesTheSameBitsInAnyPortions) {
   const Scene undamped = withViscousDamping(testing::membraneScene(3), 0.1);
   for (const Scene& scene : {undamped, withDampedSprings(undamped, 0.1)}) {
     for (const IntegrationMethod method : kMethods) {
-      const State whole = stepped(*makeIntegrator(systemOf(scene), method, 1e-3), scene, 10);
-      const auto integrator = makeIntegrator(systemOf(scene), method, 1e-3);
+      const State whole = stepped(*makeIntegrator(planOf(scene), method, 1e-3), scene, 10);
+      const auto integrator = makeIntegrator(planOf(scene), method, 1e-3);
       State state = stateOf(scene);
       integrator->take(state);
       for (const int steps : {1, 0, 3, 1, 2, 3}) {
@@ -280,9 +281,9 @@ TEST(Stepping, GivesTheSameBitsInWhateverOrderTheSceneIsSent) {
   for (const Scene& scene : dampedScenes()) {
     const Shuffled shuffled(scene);
     for (const IntegrationMethod method : kMethods) {
-      const State expected = stepped(*makeIntegrator(systemOf(scene), method, 1e-3), scene, 5);
+      const State expected = stepped(*makeIntegrator(planOf(scene), method, 1e-3), scene, 5);
       const State result =
-          stepped(*makeIntegrator(systemOf(shuffled.scene), method, 1e-3), shuffled.scene, 5);
+          stepped(*makeIntegrator(planOf(shuffled.scene), method, 1e-3), shuffled.scene, 5);
       for (std::size_t i = 0; i < shuffled.places.size(); ++i) {
         const auto there = shuffled.places[i];
         ASSERT_EQ(result.positions.col(there), expected.positions.col(i));
@@ -297,8 +298,8 @@ TEST(Stepping, OfLargeAnglesIsThatOfOneSpringAtATime) {
   const Scene scene = testing::randomScene(4, 20, 20, 0, 500);  // half a turn in some milliseconds
   for (const StepKernels* kernels : stepKernelsHere()) {
     for (const double step : {1e-3, 1e-2, 1.}) {
-      SplittingIntegrator plain(systemOf(scene), splittingScheme(IntegrationMethod::euler), step);
-      BlockedSplitting blocked(systemOf(scene), splittingScheme(IntegrationMethod::euler), step,
+      testing::SplittingIntegrator plain(planOf(scene)->system(), splittingScheme(IntegrationMethod::euler), step);
+      BlockedSplitting blocked(planOf(scene), splittingScheme(IntegrationMethod::euler), step,
                                *kernels);
       EXPECT_LT(difference(stepped(plain, scene, 1), stepped(blocked, scene, 1)), 1e-12);
     }
@@ -314,7 +315,7 @@ TEST(Layout, HoldsNothingForKindsThatAreNotThere) {
       springs.get<SolidAngleSpring>() = testing::springsOf(whole).get<SolidAngleSpring>();
     }
     const Scene scene = testing::sceneOf(whole.particles().items(), springs);
-    return systemOf(scene)->layout()->bytes();
+    return planOf(scene)->layout().bytes();
   };
   const std::size_t arc = 2 * sizeof(std::uint32_t) + 2 * sizeof(double);
   const std::size_t triangle = 3 * sizeof(std::uint32_t) + 2 * sizeof(double);
@@ -324,8 +325,8 @@ TEST(Layout, HoldsNothingForKindsThatAreNotThere) {
 }
 
 TEST(Layout, HasOnePatchForASmallScene) {
-  EXPECT_EQ(systemOf(testing::membraneScene(3))->layout()->patches().size(), 1);
-  EXPECT_GT(systemOf(testing::membraneScene(5))->layout()->patches().size(), 3);
+  EXPECT_EQ(planOf(testing::membraneScene(3))->layout().patches().size(), 1);
+  EXPECT_GT(planOf(testing::membraneScene(5))->layout().patches().size(), 3);
 }
 
 }  // namespace

@@ -25,16 +25,17 @@ inline State stateOf(const Scene& scene) {
 }
 
 struct Trajectory {
-  std::shared_ptr<const System> system;
+  std::shared_ptr<const Plan> plan;
   State state;
 
   Trajectory(const Scene& scene, const std::string& method, double time_step, int steps,
              System::Options options = {})
-      : system(std::make_shared<const System>(scene, options)), state(stateOf(scene)) {
-    const auto integrator = makeIntegrator(system, integrationMethod(method), time_step);
+      : plan(std::make_shared<const Plan>(scene, options)), state(stateOf(scene)) {
+    const auto integrator = makeIntegrator(plan, integrationMethod(method), time_step);
     for (int i = 0; i < steps; ++i) integrator->step(state);
   }
-  double conserved() const { return energies(*system, state).total() + state.dissipated; }
+  const System& system() const { return *plan->system(); }
+  double conserved() const { return energies(*plan, state).total() + state.dissipated; }
 };
 
 inline void expectSound(const State& state) {
