@@ -27,8 +27,11 @@ int orderOf(IntegrationMethod method);
 /// implicit_euler.
 double stabilityLimit(IntegrationMethod method);
 
-/// Owns a copy of the state in a memory layout of its own; `give` converts it back. Equal numbers of
-/// steps give equal bits, however they are cut into calls and whatever is read in between.
+/// Whether the method loses energy of its own, apart from damping.
+bool takesEnergyOut(IntegrationMethod method);
+
+/// Owns a copy of the state in a memory layout of its own; `give` converts it back. Equal numbers
+/// of steps give equal bits, however they are cut into calls and whatever is read in between.
 class Integrator {
  public:
   virtual ~Integrator() = default;

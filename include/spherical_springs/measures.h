@@ -52,8 +52,8 @@ struct Measures {
   std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
 };
 
-Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method, double time_step,
-                 const State& state, Account& account);
+Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
+                 double time_step, const State& state, Account& account);
 
 /// Largest torque of the springs on a particle that is not pinned [N m].
 double maxTorque(const Plan& plan, const State& state);

@@ -14,7 +14,8 @@ class Layout;
 /// Unchanging but for the layout, which is made when first asked for; for many threads.
 class Plan {
  public:
-  /// The layout depends on where `scene` has its particles, so that neighbours come to lie together.
+  /// The layout depends on where `scene` has its particles, so that neighbours come to lie
+  /// together.
   Plan(const Scene& scene, System::Options options);
 
   /// `positions`: one unit vector a particle, in the order of ids.

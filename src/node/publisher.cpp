@@ -4,8 +4,8 @@
 
 #include "node/conversion.h"
 #include "node/poses.h"
-#include "spherical_springs/measures.h"
 #include "node/surviving.h"
+#include "spherical_springs/measures.h"
 
 namespace spherical_springs {
 namespace {

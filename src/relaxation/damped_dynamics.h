@@ -4,9 +4,9 @@
 
 #include "relaxation/descent.h"
 #include "relaxation/orientation_guard.h"
+#include "relaxation/torque_limit.h"
 #include "spherical_springs/plan.h"
 #include "spherical_springs/state.h"
-#include "relaxation/torque_limit.h"
 #include "stepping/blocked_splitting.h"
 
 namespace spherical_springs::core {

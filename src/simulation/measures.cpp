@@ -84,8 +84,7 @@ bool blownUp(const Measures& measures, IntegrationMethod method, const System& s
   constexpr double kAstray = 0.1;      // of the energy
   constexpr double kRounding = 1e-20;  // [rad^2] or [sr^2]
   if (!std::isfinite(now.total())) return true;
-  const bool takes_energy_out = method == IntegrationMethod::implicit_euler;
-  return !takes_energy_out && measures.energy_error > kAstray &&
+  return !takesEnergyOut(method) && measures.energy_error > kAstray &&
          now.total() > kRounding * system.largestStiffness();
 }
 
@@ -110,8 +109,8 @@ std::string warningOf(const Measures& measures, double time_step, const State& s
 
 }  // namespace
 
-Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method, double time_step,
-                 const State& state, Account& account) {
+Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
+                 double time_step, const State& state, Account& account) {
   const System& system = *plan->system();
   Measures result;
   result.stable_time_step = stableTimeStep(system, method, state.positions);

@@ -6,8 +6,8 @@
 #include <exception>
 #include <utility>
 
-#include "system/alignment.h"
 #include "spherical_springs/range.h"
+#include "system/alignment.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -182,7 +182,8 @@ Runner::~Runner() {
 
 std::shared_ptr<Runner::Work> Runner::beginning(const RelaxationOptions& options) {
   const Lock lock(mutex_);
-  return std::make_shared<Work>(simulation_.plan()->system(), simulation_.state().positions, options);
+  return std::make_shared<Work>(simulation_.plan()->system(), simulation_.state().positions,
+                                options);
 }
 
 /// Waits for the worker of a relaxation that was cancelled, which may be in the middle of an

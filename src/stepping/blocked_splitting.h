@@ -11,8 +11,8 @@ namespace spherical_springs::core {
 /// made, so that no step can fail.
 class BlockedSplitting : public Integrator {
  public:
-  BlockedSplitting(std::shared_ptr<const Plan> plan, const SplittingScheme& scheme, double time_step,
-                   const StepKernels& kernels = stepKernels());
+  BlockedSplitting(std::shared_ptr<const Plan> plan, const SplittingScheme& scheme,
+                   double time_step, const StepKernels& kernels = stepKernels());
   void take(const State& state) override;
   void advance(std::uint64_t steps) override;
   void give(State& state) const override;

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "stepping/step_kernels.h"
+#include "spherical_springs/plan.h"
 #include "stepping/layout.h"
 #include "stepping/scratch.h"
-#include "spherical_springs/plan.h"
+#include "stepping/step_kernels.h"
 
 namespace spherical_springs::core {
 

@@ -5,12 +5,12 @@
 #include <memory>
 #include <vector>
 
-#include "stepping/step_kernels.h"
+#include "spherical_springs/plan.h"
+#include "spherical_springs/state.h"
 #include "stepping/damped_kick.h"
 #include "stepping/forces.h"
 #include "stepping/layout.h"
-#include "spherical_springs/state.h"
-#include "spherical_springs/plan.h"
+#include "stepping/step_kernels.h"
 #include "stepping/viscous_flows.h"
 
 namespace spherical_springs::core {

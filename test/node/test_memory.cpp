@@ -8,7 +8,6 @@
 #include <memory>
 #include <sstream>
 
-#include "support/scenes.h"
 #include "failing_malloc.h"
 #include "node/answering_service.h"
 #include "node/conversion.h"
@@ -16,6 +15,7 @@
 #include "node/markers.h"
 #include "node/poses.h"
 #include "node/surviving.h"
+#include "support/scenes.h"
 
 namespace spherical_springs {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "support/relaxation_scenes.h"
 #include "spherical_springs/relaxation.h"
 #include "spherical_springs/simulation.h"
+#include "support/relaxation_scenes.h"
 
 namespace spherical_springs::core {
 namespace {

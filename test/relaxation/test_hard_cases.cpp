@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "support/scenes.h"
 #include "spherical_springs/relaxation.h"
+#include "support/scenes.h"
 #include "support/trajectory.h"
 
 namespace spherical_springs::core {
@@ -197,7 +197,8 @@ TEST(ImplicitEuler, MakesNoEnergyWhereTheSpringsAreNotConvex) {
     const Scene scene = testing::randomScene(seed, 8, 10, 0, 3);
     const auto plan = std::make_shared<const Plan>(scene, System::Options());
     State state = testing::stateOf(scene);
-    const double stable = stableTimeStep(*plan->system(), IntegrationMethod::verlet, state.positions);
+    const double stable =
+        stableTimeStep(*plan->system(), IntegrationMethod::verlet, state.positions);
     for (const double factor : {0.3, 3., 30.}) {
       const auto integrator =
           makeIntegrator(plan, IntegrationMethod::implicit_euler, factor * stable);

@@ -10,9 +10,9 @@
 #include <thread>
 #include <vector>
 
-#include "support/scenes.h"
-#include "spherical_springs/measures.h"
 #include "simulation/runner.h"
+#include "spherical_springs/measures.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

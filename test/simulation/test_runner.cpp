@@ -3,8 +3,8 @@
 #include <future>
 #include <thread>
 
-#include "support/scenes.h"
 #include "simulation/runner.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

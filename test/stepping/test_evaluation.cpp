@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "support/relaxation_scenes.h"
 #include "spherical_springs/measures.h"
-#include "support/step_levels.h"
 #include "stepping/evaluation.h"
+#include "support/relaxation_scenes.h"
+#include "support/step_levels.h"
 #include "support/trajectory.h"
 
 namespace spherical_springs::core {
@@ -130,10 +130,10 @@ TEST(Evaluation, GivesTheSameBitsOnAnyNumberOfThreads) {
 TEST(Evaluation, IsOfThePositionsGivenNotOfThoseOfTheLayout) {
   const Scene scene = testing::membraneScene(2);
   const auto plan = planOf(scene);
-    const System& system = *plan->system();
+  const System& system = *plan->system();
   const Points positions = testing::positionsOf(testing::membraneScene(2, 5));
-  EXPECT_NEAR(Evaluation(*plan, positions).potential().total(),
-              system.potential(positions).total(), 1e-13 * system.potential(positions).total());
+  EXPECT_NEAR(Evaluation(*plan, positions).potential().total(), system.potential(positions).total(),
+              1e-13 * system.potential(positions).total());
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <memory>
 
-#include "support/scenes.h"
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/measures.h"
+#include "support/scenes.h"
 #include "support/trajectory.h"
 #include "transcription/report.h"
 

@@ -157,7 +157,7 @@ TEST_P(DampedStepping, BySweepsHasTheSameLimit) {
   Scene scene = withViscousDamping(testing::randomScene(3, 1500, 1500, 0, 1), 5);
   scene = withDampedSprings(scene, 5);
   testing::SplittingIntegrator plain(planOf(scene, 1, GetParam())->system(),
-                            splittingScheme(IntegrationMethod::verlet), 1. / 2048);
+                                     splittingScheme(IntegrationMethod::verlet), 1. / 2048);
   const State exact = core::stepped(plain, scene, 128);
   const auto error = [&](int steps) {
     const State state = stepped(scene, IntegrationMethod::verlet, 1. / 16 / steps, steps);
@@ -199,7 +199,8 @@ TEST_P(DampedStepping, DoesNotDampHardSpringsOtherwise) {
   }
   const Scene scene = testing::sceneOf(particles, springs);
   const auto plan = planOf(scene, 1, GetParam());
-  testing::SplittingIntegrator plain(plan->system(), splittingScheme(IntegrationMethod::euler), 1e-3);
+  testing::SplittingIntegrator plain(plan->system(), splittingScheme(IntegrationMethod::euler),
+                                     1e-3);
   EXPECT_LT(
       difference(stepped(scene, IntegrationMethod::euler, 1e-3, 1), core::stepped(plain, scene, 1)),
       1e-15);
@@ -298,7 +299,8 @@ TEST(Stepping, OfLargeAnglesIsThatOfOneSpringAtATime) {
   const Scene scene = testing::randomScene(4, 20, 20, 0, 500);  // half a turn in some milliseconds
   for (const StepKernels* kernels : stepKernelsHere()) {
     for (const double step : {1e-3, 1e-2, 1.}) {
-      testing::SplittingIntegrator plain(planOf(scene)->system(), splittingScheme(IntegrationMethod::euler), step);
+      testing::SplittingIntegrator plain(planOf(scene)->system(),
+                                         splittingScheme(IntegrationMethod::euler), step);
       BlockedSplitting blocked(planOf(scene), splittingScheme(IntegrationMethod::euler), step,
                                *kernels);
       EXPECT_LT(difference(stepped(plain, scene, 1), stepped(blocked, scene, 1)), 1e-12);
