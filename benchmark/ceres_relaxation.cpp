@@ -129,9 +129,9 @@ void constrain(const System& system, double* positions, ceres::Manifold& sphere,
   }
 }
 
-/// What Ceres compares with its gradient tolerance is the gradient in the manifold's coordinates,
-/// taken back into space: this much of the gradient (in version 2.1, whose coordinates are twice
-/// the angle, a quarter).
+/// Ceres compares its gradient tolerance with the gradient in the manifold's coordinates, taken
+/// back into space: this factor times the gradient (in version 2.1, whose coordinates are twice the
+/// angle, a quarter).
 double shareOfGradient(const ceres::Manifold& sphere) {
   const Vector3 point = Vector3::UnitZ();
   Eigen::Matrix<double, 3, 2, Eigen::RowMajor> jacobian;

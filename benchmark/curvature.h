@@ -12,7 +12,7 @@ struct EigenvalueRange {
   bool resolved = true;  ///< false: Lanczos iterations did not settle, and `smallest` means nothing
 };
 
-/// Of the Hessian by differences. All eigenvalues up to 1,300 unknowns; beyond, Lanczos iterations,
+/// Eigenvalues of the Hessian by differences: all up to 1,300 unknowns; beyond, Lanczos iterations,
 /// which resolve `smallest` to about 1e-8 of the largest.
 EigenvalueRange eigenvalueRange(const spherical_springs::core::System& system,
                                 const SparseMatrix& hessian,

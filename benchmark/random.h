@@ -20,7 +20,8 @@ class Random {
 
   std::uint32_t below(std::uint32_t bound) { return static_cast<std::uint32_t>(unit() * bound); }
 
-  /// Of mean 0 and deviation 1, after G. E. P. Box and M. E. Muller, Ann. Math. Stat. 29 (1958).
+  /// Draws a number of mean 0 and deviation 1, after G. E. P. Box and M. E. Muller, Ann. Math.
+  /// Stat. 29 (1958).
   double normal() {
     const double radius = std::sqrt(-2 * std::log(1 - unit()));
     return radius * std::cos(2 * spherical_springs::core::kPi * unit());

@@ -97,7 +97,7 @@ double maxTorque(const System& system, const Points& positions) {
   return largest;
 }
 
-/// Of two energies, relative to the greater; 1e-12 of `start` counts as rounding.
+/// Difference of two energies, relative to the greater; 1e-12 of `start` counts as rounding.
 double relativeDifference(double energy, double other, double start) {
   return (energy - other) / std::max({energy, other, 1e-12 * start});
 }
@@ -200,7 +200,8 @@ void measureNetwork(const Network& network, const Settings& settings) {
                                     text(ours.result.energy_after, 7)};
   std::vector<std::string> of_ceres = {"-", "-", "-", "-", "-"};
   if (!settings.without_ceres) {
-    const double tolerance = settings.tolerance > 0 ? settings.tolerance : 1e-9 * system.largestStiffness();
+    const double tolerance =
+        settings.tolerance > 0 ? settings.tolerance : 1e-9 * system.largestStiffness();
     const CeresResult ceres = relaxByCeres(system, start, tolerance, settings.max_time);
     const double energy = system.potential(ceres.positions).total();
     of_ceres = {text(energy, 7),

@@ -1,4 +1,4 @@
-// What scenes to relax are made of.
+// Parts of scenes to relax.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ enum class Springs { arcs, triangles, both };
 /// Gaussian of 0.15 mean edges.
 Parts displaced(const Mesh& mesh, Springs springs, Random& random, double triangle_stiffness = 10);
 
-/// The same of an icosphere.
+/// Springs on the edges and faces of a displaced icosphere.
 Parts displacedMesh(int level, Springs springs, Random& random, double triangle_stiffness = 10);
 
 }  // namespace benchmark_scenes

@@ -31,14 +31,14 @@ class Damping {
   bool hasDampers() const { return !dampers_.empty(); }
   double viscous(Eigen::Index particle) const { return viscous_[particle]; }  ///< [N m s/rad]
 
-  /// What viscous damping does to one particle over a kick, exactly.
+  /// The exact flow of viscous damping on one particle over a kick.
   struct ViscousFlow {
     double decay;                 ///< factor of the velocity
     double gain;                  ///< velocity by a torque
     std::array<double, 3> taken;  ///< energy by w . w, w . torque and torque . torque
   };
 
-  /// Of the particle at an index, over `duration` [s], which may be negative.
+  /// Returns the flow of the particle at an index over `duration` [s], which may be negative.
   ViscousFlow viscousFlow(Eigen::Index particle, double duration) const;
 
   /// A bound of the fastest decay [1/s], by Gershgorin's circles of M^-1 D.

@@ -1,4 +1,4 @@
-// What a system reports about itself: energies, errors, bounds.
+// Energies, errors and bounds of a system.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ struct Energies {
 
 Energies energies(const Plan& plan, const State& state);
 
-/// What is conserved, and by how much it has changed since the account began. For many threads.
+/// Conserved quantities when the account began, and their change since. For many threads.
 class Account {
  public:
   Account(const Plan& plan, const State& state);

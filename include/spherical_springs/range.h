@@ -37,7 +37,7 @@ std::string onOneLine(std::string text);
 /// On one line, and of a long text the beginning.
 std::string shortened(const std::string& text);
 
-/// The same between quotes, with the length of a text of which not all is there.
+/// Text for a message between quotes; a long text is cut, and its length told.
 std::string quoted(const std::string& text);
 
 /// @throw std::invalid_argument "`field` is `value`; allowed: ..." when `value` is outside; a

@@ -40,7 +40,7 @@ struct RelaxationOptions {
   /// Largest torque left on a free particle [N m]; 0: 1e-9 of the stiffness that the particle
   /// feels, half the trace of its block of the definite Hessian.
   double tolerance = 0;
-  double max_time = 0;   ///< wall [s]; 0: no limit
+  double max_time = 0;  ///< wall [s]; 0: no limit
   /// Whether steps are cut before a triangle of a solid-angle spring would fold: one that is
   /// oriented as its rest angle asks, or that asks for none.
   bool keep_orientation = false;
@@ -79,7 +79,7 @@ class Relaxer {
   Points last_end_;
 };
 
-/// The same, once.
+/// Relaxes once, with a Relaxer of its own.
 RelaxationResult relax(const System& system, const Points& positions,
                        const RelaxationOptions& options);
 

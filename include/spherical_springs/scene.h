@@ -66,9 +66,11 @@ class Scene {
   /// @return the new ids.
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
 
-  /// @return the indices of the particles that were set.
-  std::vector<std::size_t> setParticles(const std::vector<std::uint32_t>& ids,
-                                        std::vector<Particle> particles);
+  struct Setting {
+    std::vector<std::size_t> indices;  ///< of the particles that were set
+    bool only_moved = true;            ///< whether masses, damping and pins are as they were
+  };
+  Setting setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
 
   struct Removal {
     std::vector<bool> particles;  ///< by index before the removal

@@ -21,7 +21,7 @@ struct SceneFile {
 /// allowed.
 SceneFile readScene(const std::filesystem::path& path, SceneLimits limits);
 
-/// The same from a stream that can tell its position.
+/// Reads a scene from a stream that can tell its position.
 SceneFile readScene(std::istream& in, SceneLimits limits);
 
 /// Writes beside `path` and renames, so that `path` is whole at any moment, whoever else writes it;
@@ -30,7 +30,7 @@ SceneFile readScene(std::istream& in, SceneLimits limits);
 /// @throw std::runtime_error when it cannot be written.
 void writeScene(const std::filesystem::path& path, const Scene& scene, double time);
 
-/// The same to a stream, whose state tells whether it succeeded.
+/// Writes a scene to a stream, whose state tells whether it succeeded.
 void writeScene(std::ostream& out, const Scene& scene, double time);
 
 }  // namespace spherical_springs::core

@@ -70,6 +70,7 @@ class Simulation {
  private:
   State& changeState();
   void beginAt(State start);
+  void moved();
   void changed();
 
   Settings settings_;
@@ -77,7 +78,7 @@ class Simulation {
   mutable State state_;
   mutable bool integrator_is_ahead_ = false;  // of the state
   bool integrator_has_state_ = false;
-  // Made when first needed after a change.
+  // Made when first needed after a change; the plan and the integrator outlive moves.
   std::shared_ptr<const Plan> plan_;
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<Account> account_;

@@ -11,11 +11,11 @@ struct Progress {
   double time = 0;           ///< simulated [s]
   double time_rounding = 0;  ///< what adding up the steps has rounded away of the time [s]
   std::uint64_t steps = 0;   ///< since time was last 0
-  std::uint64_t unconverged_steps = 0;  ///< of an implicit method, likewise
+  std::uint64_t unconverged_steps = 0;  ///< of an implicit method, since the time was last 0
   double dissipated = 0;                ///< energy taken out by damping since the account began [J]
 };
 
-/// What changes when time goes on. Columns are particles in the order of their ids.
+/// Positions and velocities at a time. Columns are particles in the order of their ids.
 struct State : Progress {
   Points positions;           ///< unit vectors
   Points angular_velocities;  ///< [rad/s], each normal to its position

@@ -65,10 +65,10 @@ class System {
     return springs_.get<Spring>();
   }
 
-  /// What one evaluation at some positions leaves for the next use of it; reused to save memory.
+  /// Arrays of an evaluation at some positions, reused to save memory.
   struct Workspace {
     std::vector<Vector3> end_torques;    ///< of each end of each spring
-    std::vector<Vector3> end_gradients;  ///< likewise; only in a scene with damped springs
+    std::vector<Vector3> end_gradients;  ///< of each end of each spring, if any spring is damped
     Points torques;                      ///< of each particle [N m]
   };
 

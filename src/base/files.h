@@ -14,7 +14,8 @@ namespace spherical_springs::core {
 /// @throw std::runtime_error: "cannot `what` `path`: " and what the system says.
 [[noreturn]] void failTo(const std::string& what, const std::filesystem::path& path);
 
-/// What `use` returns. @throw what it throws, but as failTo does for a std::filesystem_error.
+/// Returns `use()`.
+/// @throw what `use` throws, with a std::filesystem_error worded as by `failTo`.
 template <class Use>
 auto orFailTo(const std::string& what, const std::filesystem::path& path, const Use& use) {
   try {

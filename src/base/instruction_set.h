@@ -1,4 +1,4 @@
-// What this processor can do of what kernels are compiled for.
+// Run-time detection of the instruction sets that kernels are compiled for.
 #pragma once
 
 namespace spherical_springs::core {

@@ -80,7 +80,7 @@ inline FourFloats load(const float* from) {
   return result;
 }
 
-/// The same with one instruction for all products of a block.
+/// The row product in single precision, with one instruction for all products of a 2 x 2 block.
 template <>
 inline Eigen::Vector2f rowProduct(const Graph& graph, const Blocks<float, 2>& values,
                                   const VectorOf<float>& x, std::uint32_t begin,
@@ -97,7 +97,7 @@ inline Eigen::Vector2f rowProduct(const Graph& graph, const Blocks<float, 2>& va
   return {sum[0] + sum[2], sum[1] + sum[3]};
 }
 
-/// The same with one instruction for all products of a column.
+/// The row product in single precision, with one instruction for all products of a column of three.
 template <>
 inline Eigen::Vector3f rowProduct(const Graph& graph, const Blocks<float, 3>& values,
                                   const VectorOf<float>& x, std::uint32_t begin,

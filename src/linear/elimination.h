@@ -1,4 +1,4 @@
-// What elimination_*.cpp compile, each for an instruction set.
+// The elimination of a front, which elimination_*.cpp compile for each instruction set.
 #pragma once
 
 #include <Eigen/Cholesky>

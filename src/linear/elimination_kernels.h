@@ -5,8 +5,8 @@
 
 namespace spherical_springs::core {
 
-/// Of a symmetric matrix in parts, each by columns without gaps: `own` (own x own) and `rest` (rest
-/// x rest), of which the lower triangles count, and `below` (rest x own) between them.
+/// A symmetric matrix in parts, each stored by columns without gaps: `own` (own x own) and `rest`
+/// (rest x rest), of which the lower triangles count, and `below` (rest x own) between them.
 struct FrontMatrix {
   double *own, *below, *rest;
   std::ptrdiff_t own_size, rest_size;

@@ -32,7 +32,7 @@ struct Schedule {
     }
   }
 
-  /// The same, from the last colour to the first.
+  /// Calls `body(block)` for all blocks, from the last colour to the first.
   template <class Body>
   void forEachBackward(int threads, const Body& body) const {
     const std::ptrdiff_t colours = static_cast<std::ptrdiff_t>(first.size()) - 1;

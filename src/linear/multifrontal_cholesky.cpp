@@ -62,7 +62,7 @@ void MultifrontalCholesky::assemble(const Part& part, const Blocks<double, 2>& v
     for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::uint32_t other = dissection_.places[graph.neighbours[e]];
       if (other < place) continue;
-      // Of a symmetric matrix the block at the mirrored place is the transpose.
+      // The matrix is symmetric: the mirrored block is the transpose.
       const std::size_t row = positionOf(part, other);
       auto& target = row < own ? front.own : front.below;
       target.block<2, 2>(2 * (row < own ? row : row - own), 2 * column) = values[e].transpose();

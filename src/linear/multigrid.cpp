@@ -86,7 +86,7 @@ void GaussSeidel<Real, N>::forward(const VectorOf<Real>& b, VectorOf<Real>& x,
       part<N>(x, i) = inverse_diagonal_[i].lazyProduct(left);
     }
   });
-  // What a row had left when it was swept is 0 but for the rows after it.
+  // The residual of a row was 0 when it was swept; the rows after it have changed it since.
   forOnThreads(pattern_.rows(), threads_, [&](std::ptrdiff_t i) {
     part<N>(residual, i) =
         -rowProduct<Real, N>(graph, *values_, x, pattern_.diagonal[i] + 1, graph.first[i + 1]);

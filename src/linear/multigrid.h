@@ -15,7 +15,7 @@ namespace spherical_springs::core {
 template <class Real, int N>
 class GaussSeidel {
  public:
-  /// What is passed must live longer.
+  /// The arguments must live longer.
   GaussSeidel(const BlockPattern& pattern, const Blocks<Real, N>& values, int threads);
 
   /// Takes other values of the same pattern.

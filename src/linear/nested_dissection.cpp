@@ -93,7 +93,7 @@ class Dissection {
     return part;
   }
 
-  /// What hangs together apart from the rest, and what is too small for that together.
+  /// Dissects each connected component; small ones are eliminated several at a time.
   Nodes dissectPieces(const Nodes& nodes, std::uint32_t region) {
     Nodes tops, small;
     for (const std::uint32_t i : nodes) {
@@ -148,8 +148,8 @@ class Dissection {
     return reached;
   }
 
-  /// By the level that is shortest for the smaller of the halves that it makes, less what has
-  /// neighbours in one half only.
+  /// Cuts at the level with the largest ratio of the smaller half to the level's own size. Nodes of
+  /// that level without a neighbour behind it go to the half before it.
   Halves cut(const Nodes& reached, std::uint32_t region) const {
     const std::uint32_t depth = level_[reached.back()];
     Nodes first(depth + 2, 0);

@@ -11,7 +11,7 @@
 namespace spherical_springs::mesh {
 namespace {
 
-/// Of the faces round each vertex.
+/// Mean share of the faces round each vertex.
 Eigen::ArrayXd meanShares(const Patch& patch) {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(patch.vertices.size()));
   Eigen::ArrayXd count = sum;

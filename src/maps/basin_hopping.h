@@ -17,7 +17,7 @@ namespace spherical_springs::mesh {
 /// matter of a few hundred vertices.
 class BasinHopping {
  public:
-  /// Of a closed mesh, with the weight of the shape of its faces in their energy; what is passed
+  /// Hops on maps of a closed mesh; `shape` weights the shape of faces in the energy. The arguments
   /// must live longer. Where `checkpoint` throws TimeIsOver, hops stay as low as they have come.
   BasinHopping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
                double shape, int threads, core::Checkpoint checkpoint = core::passAll);

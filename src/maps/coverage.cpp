@@ -5,7 +5,7 @@
 namespace spherical_springs::mesh {
 
 bool surelyPositive(const Vector3& a, const Vector3& b, const Vector3& c) {
-  // Of differences of unit vectors, of their products, and of the points as rays from the centre.
+  // Covers differences of unit vectors, their products, and points that are rays from the centre.
   constexpr double kRounding = 3e-15;
   const double edges = (b - a).norm() * (c - a).norm();
   return core::tripleProduct(a, b, c) > kRounding * edges;

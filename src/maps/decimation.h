@@ -21,8 +21,8 @@ struct MeshLevel {
 /// the last one taken away to the first; a face that vanishes leaves its share to the next.
 struct Decimation {
   std::vector<std::int32_t> vertices;  ///< of the mesh, by number here
-  /// Of each vertex, when it was taken away: the neighbours, counter-clockwise, from the one that
-  /// it was moved to; none of vertices that stay.
+  /// For each vertex the neighbours that it had when it was taken away, counter-clockwise, from the
+  /// one that it was moved to; empty for vertices that stay.
   std::vector<std::vector<std::int32_t>> rings;
   std::vector<MeshLevel> levels;  ///< from the coarsest to the mesh itself
 };

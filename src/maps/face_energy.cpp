@@ -15,7 +15,7 @@ struct Cost {
   double value, slope, bend;
 };
 
-/// By the area.
+/// Returns the cost and its derivatives by the area.
 Cost areaCost(AreaCost cost, double area, double share) {
   const double r = area / share;
   if (cost == AreaCost::square) {

@@ -1,4 +1,4 @@
-// What one face of a map to the sphere contributes to the energy.
+// The energy of one face of a map to the sphere.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace spherical_springs::mesh {
 /// right.
 enum class FaceHessian { exact, definite, gauss_newton };
 
-/// What the area of a face costs, with r = area / share: (r + 1/r - 2) / 2, which is infinite at a
-/// fold; or (r - 1)^2 / 2 of the signed area, which is not.
+/// The cost of the area of a face, with r = area / share: (r + 1/r - 2) / 2, which is infinite at a
+/// fold, or (r - 1)^2 / 2 of the signed area, which is finite there.
 enum class AreaCost { barrier, square };
 
 /// weight (cost of the area

@@ -27,7 +27,7 @@ class MapDescent {
     }
   }
 
-  /// The same with a sweep over the vertices after each step.
+  /// Runs with a sweep over the vertices after each step.
   template <class GoOn>
   void runWithSweeps(FaceHessian hessian, double slow, const GoOn& go_on) {
     bool moved = false;

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/curve_order.h"
 #include "base/parallel.h"
+#include "geometry/curve_order.h"
 #include "maps/coverage.h"
 #include "spherical_springs/springs/solid_angle.h"
 
@@ -220,7 +220,7 @@ Eigen::Vector2d MapEnergy::ownStep(std::size_t n) const {
          ((axes.eigenvectors().transpose() * gradient).array() / bounded).matrix();
 }
 
-/// Of the faces round a vertex, were it at `point`.
+/// Energy of the faces round a vertex if it were at `point`.
 double MapEnergy::ownValue(std::size_t n, const Vector3& point) const {
   double sum = 0;
   for (std::uint32_t s = first_corner_[n]; s < first_corner_[n + 1]; ++s) {

@@ -1,4 +1,4 @@
-// What is minimised over maps of a mesh to the sphere.
+// The energy that is minimised over maps of a mesh to the sphere.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class MapEnergy {
   MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points, int threads,
             const core::Checkpoint& checkpoint = core::passAll);
 
-  /// Of a patch of a map: the first `free` points, all of whose faces it has, move, and the others
-  /// stay.
+  /// The energy of a patch of a map: the first `free` points, whose faces must all be in `faces`,
+  /// move, and the others stay.
   MapEnergy(const Faces& faces, const Eigen::VectorXd& shares, const Points& points,
             std::int32_t free, int threads, const core::Checkpoint& checkpoint = core::passAll);
 

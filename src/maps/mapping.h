@@ -15,7 +15,7 @@ namespace spherical_springs::mesh {
 /// One map under way, of a mesh that `requireTopologicalSphere` lets pass.
 class Mapping {
  public:
-  /// What is passed must live longer.
+  /// The arguments must live longer.
   Mapping(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices,
           const MapOptions& options)
       : faces_(faces), shares_(shares), vertices_(vertices), options_(options), clock_(options) {}

@@ -9,7 +9,8 @@
 namespace spherical_springs::mesh {
 
 struct Patch {
-  /// Of the mesh, by number here: the free ones from the middle outwards, then those next to them.
+  /// Vertices of the mesh by their number in the patch: the free ones from the middle outwards,
+  /// then those next to them.
   std::vector<std::int32_t> vertices;
   std::int32_t free = 0;
   Faces faces;             ///< all round the free vertices, of numbers
@@ -22,7 +23,7 @@ struct Patch {
 /// Cuts patches out of a mesh none of which has a face with a free vertex of another.
 class PatchCutter {
  public:
-  /// Of a closed mesh; what is passed must live longer.
+  /// Cuts patches of a closed mesh. The arguments must live longer.
   PatchCutter(const Faces& faces, const Eigen::VectorXd& shares, std::int32_t vertices);
 
   /// About a face, up to `size` free vertices, or as many more as one of them has neighbours. None

@@ -11,7 +11,7 @@
 
 namespace spherical_springs {
 
-/// What there is to report at one moment.
+/// Facts to report at one moment.
 struct Report {
   Status status;
   News::Facts news;

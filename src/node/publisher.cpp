@@ -107,7 +107,7 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.step_wall_time = snapshot.step_wall_time;
   message.relax_progress = snapshot.relax_progress;
 
-  // What a step would do means nothing while a relaxation wants the processors.
+  // Trial steps would take the processors from a relaxation, and mean nothing meanwhile.
   if (snapshot.activity != core::Activity::relaxing) {
     measures_ = core::measure(snapshot.plan, core::integrationMethod(parameters_.integrator),
                               parameters_.time_step, state, *snapshot.account);

@@ -15,8 +15,8 @@
 #include "node/news.h"
 #include "node/parameters.h"
 #include "node/rest.h"
-#include "simulation/runner.h"
 #include "node/stepped_time.h"
+#include "simulation/runner.h"
 
 namespace spherical_springs {
 
@@ -26,7 +26,7 @@ namespace spherical_springs {
 class Publisher {
  public:
   /// `sampling` and `reporting`: handles whose callbacks publish poses and energies, and status and
-  /// diagnostics, each on one thread. What is passed must live longer.
+  /// diagnostics, each on one thread. The arguments must live longer.
   Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner, News& news,
             const Parameters& parameters);
 

@@ -15,11 +15,11 @@
 #include "relax_mesh/interruption.h"
 #include "relax_mesh/output_files.h"
 #include "relax_mesh/progress_line.h"
+#include "relax_mesh/springs_node.h"
+#include "relax_mesh/task.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/sphere_map.h"
 #include "spherical_springs/range.h"
-#include "relax_mesh/springs_node.h"
-#include "relax_mesh/task.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
@@ -27,13 +27,14 @@ namespace {
 namespace fs = std::filesystem;
 using mesh::FaceDistortion;
 
-/// Of angle springs beside solid-angle springs: these alone leave some freedom.
+/// Relative stiffness of angle springs beside solid-angle springs, which alone leave some freedom.
 constexpr double kWeakest = 1e-5;
 
 constexpr const char* kNoMemory = "there is not enough memory";
 constexpr const char* kMapSoFar = " to improve the map further; the best so far has been written";
 
-/// Of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 80 for 50,000.
+/// Time limits of the map and of its relaxation [s]: 17 in all up to 10,000 vertices, 80 for
+/// 50,000.
 struct Times {
   explicit Times(Eigen::Index vertices)
       : map(std::max(16., 1.5e-3 * vertices)), relaxation(std::max(1., 0.1e-3 * vertices)) {}

@@ -63,7 +63,7 @@ po::options_description described(Options& options) {
                               "; allowed: " + allowed);
 }
 
-/// What is to be written, none of it over anything that is read or written as well.
+/// Refuses an output file that is also read, or written twice.
 void requireWritable(const Options& options) {
   const auto whole = [](const fs::path& path) {
     return fs::weakly_canonical(core::linksFollowed(fs::absolute(path)));

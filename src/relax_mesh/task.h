@@ -1,4 +1,4 @@
-// What a command line asks for, read and checked.
+// The task that a command line asks for, read and checked.
 #pragma once
 
 #include <filesystem>

@@ -10,8 +10,8 @@ struct TextureCoordinates {
   Faces corners;            ///< one column a face: the indices of its corners' places
 };
 
-/// Of unit vectors: u = 1/2 + longitude / (2 pi), v = 1/2 + latitude / pi; longitude 0 is at x, 90
-/// degrees at y, latitude 90 degrees at z. The first places are those of the vertices, in their
+/// Maps unit vectors to u = 1/2 + longitude / (2 pi), v = 1/2 + latitude / pi; longitude 0 is at x,
+/// 90 degrees at y, latitude 90 degrees at z. The first places are those of the vertices, in their
 /// order. Corners of faces that lie across the seam at 180 degrees get places of their own beyond
 /// u = 1, where a texture repeats. A corner on a pole gets one in each face, halfway between the
 /// other two. A face with a pole inside has no picture in this chart, and is drawn over its

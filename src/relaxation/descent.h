@@ -1,4 +1,4 @@
-// What the methods of relaxation have in common.
+// The interface of a method of relaxation.
 #pragma once
 
 #include "spherical_springs/sphere.h"

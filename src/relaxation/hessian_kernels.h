@@ -18,7 +18,7 @@ struct FieldOf {
   }
 };
 
-/// What kernels read of springs that join N particles.
+/// Arrays of springs that join N particles, for kernels to read.
 template <std::size_t N>
 struct SpringFields {
   using Ends = std::uint32_t[N];
@@ -29,7 +29,7 @@ struct SpringFields {
   FieldOf<Places> places;  ///< among the Hessian's blocks, of each pair of ends; or kNotStored
 };
 
-/// What kernels read of particles, and where they add.
+/// Arrays of particles for kernels to read, and of gradient and Hessian to add to.
 struct HessianArrays {
   static constexpr std::uint32_t kNotStored = ~0u;
 
@@ -57,7 +57,7 @@ struct HessianKernels {
   HessianKernel<3> solid_angle_springs;
 };
 
-/// Those for the widest instructions that this processor has.
+/// The kernels for the widest instructions that this processor has.
 const HessianKernels& hessianKernels();
 
 }  // namespace spherical_springs::core

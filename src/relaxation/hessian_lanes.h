@@ -2,8 +2,8 @@
 // is compiled for. The formulas are those of src/springs, for angles that are not large.
 #pragma once
 
-#include "relaxation/hessian_kernels.h"
 #include "base/lanes.h"
+#include "relaxation/hessian_kernels.h"
 
 namespace {
 
@@ -157,7 +157,7 @@ inline LaneBlock scaled(const Lanes& factor, const LaneBlock& b) {
   return {factor * b.xx, factor * b.yx, factor * b.xy, factor * b.yy};
 }
 
-/// The same for triangles.
+/// Adds energies, gradients and Hessians of triangles.
 inline bool addTriangles(const SpringFields<3>& springs, std::uint32_t first,
                          const HessianArrays& arrays, Lanes& energy) {
   constexpr double kLeastDenominator = 0.5, kLargestSquare = 0.25;

@@ -17,7 +17,7 @@ constexpr double kGreatestShift = 1e3;
 constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 
-/// By a drop of the energy after an earlier one.
+/// Judges the pace by a drop of the energy and the one before it.
 Pace paceOf(double drop, double earlier) {
   if (drop < 5e-3 * earlier) return Pace::near_end;
   return drop < 0.25 * earlier || drop > earlier ? Pace::good : Pace::poor;
@@ -174,8 +174,8 @@ void Newton::keepInside(Eigen::VectorXd& step) {
   if (guard_) step *= allowedShare(step);
 }
 
-/// What the guard allows of a step. Particles that it holds back are made to resist, so that the
-/// next steps go round them.
+/// Returns the share of a step that the guard allows. Particles that it holds back are made to
+/// resist, so that the next steps go round them.
 double Newton::allowedShare(const Eigen::VectorXd& step) {
   constexpr double kEase = 0.5;
   Eigen::VectorXd hold = Eigen::VectorXd::Zero(energy_.positions().cols());
@@ -250,12 +250,12 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   return resolved ? Trial::rejected : Trial::exhausted;
 }
 
-/// Of the next step, whose Hessian is computed along with the gradient.
+/// Chooses the model of the next step, whose Hessian is computed along with the gradient.
 void Newton::chooseModel(const ModelMinimum& minimum) {
   calm_iterations_ = minimum.indefinite ? 0 : calm_iterations_ + 1;
   if (minimum.indefinite) model_ = Model::indefinite;
   if (calm_iterations_ < 2) return;
-  // What follows the last step asks for the exact one.
+  // The test for a minimum after the last step needs the exact Hessian.
   const bool last = minimum.residual * excess_ <= 1;
   const bool tempered = model_ == Model::tempered && pace_ == Pace::good && !last;
   model_ = model_ == Model::definite || tempered ? Model::tempered : Model::exact;

@@ -184,7 +184,7 @@ double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
 
 namespace {
 
-/// Of kinds that have a kernel: which, and the rest value that it takes.
+/// Returns the kernel of a kind of springs, or null for a kind without one.
 HessianKernel<2> kernelFor(const AngleSpring&) { return hessianKernels().angle_springs; }
 HessianKernel<3> kernelFor(const SolidAngleSpring&) { return hessianKernels().solid_angle_springs; }
 template <class Spring>

@@ -42,7 +42,7 @@ class TangentEnergy {
 
   /// Puts the particles somewhere; `evaluate` is to follow.
   void place(const Points& positions);
-  /// The same, with frames carried along from where the particles were.
+  /// Puts the particles somewhere, with frames carried along from where they were.
   void carry(const Points& positions);
   void setTargets(const Points& targets);
 
@@ -64,7 +64,7 @@ class TangentEnergy {
   template <class Real>
   std::vector<Eigen::Matrix<Real, 2, 3>> rotations() const;
 
-  /// What the quadratic model of the last evaluation promises of a step.
+  /// The drop of the energy that the quadratic model of the last evaluation foretells for a step.
   double expectedDrop(const Eigen::VectorXd& step) const;
 
   /// Largest gradient of a free particle, which is its torque [N m].
@@ -74,7 +74,7 @@ class TangentEnergy {
   /// there is none.
   Eigen::VectorXd reach() const;
 
-  /// Of all particles, in the order of their ids.
+  /// Positions of all particles, in the order of their ids.
   Points positions() const;
   /// The tangent vectors by which a step moves the particles, in the same order.
   Points moves(const Eigen::VectorXd& step) const;
@@ -87,7 +87,8 @@ class TangentEnergy {
     std::vector<Spring> springs;         ///< whose particles are numbers in the order here
     std::vector<std::uint32_t> sources;  ///< their indices in the system
     std::vector<std::array<std::uint32_t, Spring::kParticles * Spring::kParticles>> places;
-    /// Of each block of the pattern, and the end; springs after that join only pinned particles.
+    /// Index of the first spring of each block of the pattern, and the end. Springs after that join
+    /// pinned particles alone.
     std::vector<std::uint32_t> first;
   };
 

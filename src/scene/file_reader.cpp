@@ -26,7 +26,7 @@ struct TextFault : std::invalid_argument {
       : std::invalid_argument("at byte " + std::to_string(byte) + ": " + reason) {}
 };
 
-/// Of what has been read, which may be anything, up to the byte at fault.
+/// Returns the end of the text read so far, with control characters replaced.
 std::string lastOf(const std::string& read) {
   constexpr std::size_t kShown = 30;
   std::string last = read.size() > kShown ? read.substr(read.size() - kShown) : read;
@@ -108,7 +108,7 @@ class SceneEvents {
     throw TextFault(byte, "this is not JSON: " + quoted(lastOf(read)));
   }
 
-  /// Of the whole scene, at its end [s].
+  /// Returns the scene's time [s]; to be called once all lists have been read.
   double time() {
     std::string format;
     double time = 0;

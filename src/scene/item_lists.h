@@ -93,7 +93,7 @@ class ItemLists {
     return end;
   }
 
-  /// Of all items, which are no longer here then.
+  /// Makes a scene of all items, which are moved out of here.
   /// @throw ItemFault, std::invalid_argument as Scene's constructor does.
   Scene scene() {
     SpringIds ids;

@@ -8,6 +8,10 @@
 namespace spherical_springs::core {
 namespace {
 
+bool differOnlyInMotion(const Particle& a, const Particle& b) {
+  return a.mass == b.mass && a.damping == b.damping && a.pinned == b.pinned;
+}
+
 // Indices of 32 bits number the longest lists that are made of a scene; one of them means none. The
 // blocks of the Hessian are one a particle and one for each ordered pair of ends of a spring. The
 // rows of stepping are the particles, filled up to a multiple of 8 in patches of a thousand, and in
@@ -38,12 +42,17 @@ Ids Scene::addParticles(std::vector<Particle> particles) {
   return ids;
 }
 
-std::vector<std::size_t> Scene::setParticles(const Ids& ids, std::vector<Particle> particles) {
+Scene::Setting Scene::setParticles(const Ids& ids, std::vector<Particle> particles) {
   requireSameLength("ids", ids.size(), "particles", particles.size());
-  auto indices = indicesOf(particles_, ids, "ids", "a particle");
+  Setting setting;
+  setting.indices = indicesOf(particles_, ids, "ids", "a particle");
   checkParticles(particles);
-  for (std::size_t i = 0; i < indices.size(); ++i) particles_.item(indices[i]) = particles[i];
-  return indices;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    Particle& present = particles_.item(setting.indices[i]);
+    setting.only_moved = setting.only_moved && differOnlyInMotion(present, particles[i]);
+    present = particles[i];
+  }
+  return setting;
 }
 
 Scene::Removal Scene::removeParticles(const Ids& ids) {

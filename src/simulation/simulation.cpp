@@ -45,11 +45,17 @@ State& Simulation::changeState() {
   return state_;
 }
 
-void Simulation::changed() {
+/// Follows a change of positions and velocities, under which the plan holds.
+void Simulation::moved() {
   changeState().dissipated = 0;
+  account_.reset();
+}
+
+/// Follows a change of anything else.
+void Simulation::changed() {
+  moved();
   plan_.reset();
   integrator_.reset();
-  account_.reset();
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {
@@ -68,10 +74,10 @@ std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> partic
 
 void Simulation::setParticles(const std::vector<std::uint32_t>& ids,
                               std::vector<Particle> particles) {
-  const auto indices = scene_.setParticles(ids, std::move(particles));
+  const auto [indices, only_moved] = scene_.setParticles(ids, std::move(particles));
   if (indices.empty()) return;
   for (const std::size_t i : indices) place(scene_.particles().item(i), i, changeState());
-  changed();
+  only_moved ? moved() : changed();
 }
 
 std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
@@ -112,7 +118,10 @@ void Simulation::clear() {
   beginAt(startOf(scene_));
 }
 
-void Simulation::reset() { beginAt(startOf(scene_)); }
+void Simulation::reset() {
+  changeState() = startOf(scene_);
+  moved();
+}
 
 void Simulation::load(SceneFile file) {
   State start = startOf(file.scene);
@@ -144,8 +153,7 @@ void Simulation::settle(const Points& positions) {
   State& state = changeState();
   state.positions = positions;
   state.angular_velocities.setZero();
-  state.dissipated = 0;
-  account_.reset();
+  moved();
 }
 
 void Simulation::restore(State state) {

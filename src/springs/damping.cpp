@@ -129,8 +129,8 @@ double Damping::kickBySeries(const std::vector<Vector3>& gradients, const Points
     velocities += next;
     term = std::move(next);
   }
-  // What the torques did, less what came to be kinetic energy; a difference of momenta, not of
-  // energies, to keep its digits: d (m w^2 / 2) = m dw . (w + w') / 2.
+  // The work of the torques less the gain of kinetic energy, which comes from a difference of
+  // momenta and not of energies, to keep its digits: d (m w^2 / 2) = m dw . (w + w') / 2.
   double taken = torques.cwiseProduct(path).sum();
   for (Eigen::Index i = 0; i < velocities.cols(); ++i) {
     if (inverse_masses_[i] == 0) continue;

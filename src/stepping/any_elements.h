@@ -61,7 +61,7 @@ inline AnyArc anyArc(const Lanes3& a, const Lanes3& b, const LaneConstants& spri
   return ~(squared_norm >= kAntipodal);
 }
 
-/// Of the solid angle of a triangle and the one at rest, modulo 4 pi.
+/// Difference between the solid angle of a triangle and the one at rest, modulo 4 pi.
 [[gnu::always_inline]] inline Lanes areaDifference(const Lanes& triple_product,
                                                    const Lanes& denominator, const Lanes& rest) {
   Lanes difference = 2 * arctangent(triple_product, denominator) - rest;

@@ -1,4 +1,4 @@
-// What `Damping` does in a scene with damped springs, patch by patch, several springs at a time.
+// The kick of `Damping` in a scene with damped springs, patch by patch, several springs at a time.
 #pragma once
 
 #include <array>
@@ -6,20 +6,20 @@
 #include <memory>
 #include <vector>
 
-#include "stepping/step_kernels.h"
+#include "spherical_springs/system.h"
 #include "stepping/damper_layout.h"
 #include "stepping/damper_sweep.h"
 #include "stepping/layout.h"
 #include "stepping/scratch.h"
-#include "spherical_springs/system.h"
+#include "stepping/step_kernels.h"
 #include "stepping/viscous_flows.h"
 
 namespace spherical_springs::core {
 
-/// Of particles under way, in the order of a layout.
+/// Velocities of the particles that are being stepped, in the order of a layout.
 struct Velocities {
   std::array<double*, 3> components;  ///< arrays over slots [rad/s]
-  const double* inverse_masses;       ///< likewise
+  const double* inverse_masses;       ///< array over slots [1/kg]
   const Row* positions;               ///< array over rows
 };
 
@@ -40,8 +40,9 @@ class DampedKick {
   /// Takes the memory that kicks over `duration` [s] need, so that none of them can fail.
   void prepare(double duration);
 
-  /// For a duration that has been prepared, as `Damping::kick` under what was taken of all patches. Where the damping is fast dampers act
-  /// in another order, which that of the springs in the scene does not change.
+  /// For a duration that has been prepared, as `Damping::kick` under what was taken of all patches.
+  /// Where the damping is fast dampers act in another order, which that of the springs in the scene
+  /// does not change.
   double kick(double duration, const Velocities& velocities);
 
  private:
@@ -68,7 +69,7 @@ class DampedKick {
   DamperSweep sweep_;
   ViscousFlows viscous_flows_;
   std::vector<double> viscous_;     // coefficients, over slots
-  std::vector<Row> torques_;        // likewise
+  std::vector<Row> torques_;        // over slots
   std::vector<Row> last_, next_;    // velocities or terms of their series
   std::vector<double> rates_;       // the fastest of each patch
   std::vector<double> dissipated_;  // of each patch

@@ -7,7 +7,7 @@
 namespace spherical_springs::core {
 namespace {
 
-/// Of all ends of a spring.
+/// Returns the gradients at all ends of a spring.
 template <int kEnds>
 std::array<Vector3, kEnds> gradientsAt(const GradientGroup<kEnds>& group, std::uint32_t lane) {
   std::array<Vector3, kEnds> gradients;

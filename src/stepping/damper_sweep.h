@@ -30,8 +30,9 @@ class DamperSweep {
   double innerForward(std::size_t patch, Row* velocities) const;
   double innerBackward(std::size_t patch, Row* velocities) const;
 
-  /// Those between patches, there and back; `velocities` has the rows of all.
-  /// @return likewise.
+  /// Lets the dampers between patches act, in turn and back. `velocities` has the rows of all
+  /// patches.
+  /// @return the energy taken out [J].
   double shared(Row* velocities) const;
 
  private:

@@ -1,4 +1,4 @@
-// What damped springs do to velocities, for several springs or particles at a time.
+// Kernels for damped springs, several springs or particles at a time.
 //
 // Velocities and rates lie in rows, as positions do.
 #pragma once
@@ -36,8 +36,8 @@ struct alignas(Row) GradientGroup {
 template <class Dampers>
 using GradientsOf = GradientGroup<Dampers::kEnds>;
 
-/// What a damper does to its ends over some time: the change of momentum by the rate, and the
-/// energy taken by its square.
+/// The flow of a damper over a duration: the change of momentum per rate, and the energy taken out
+/// per squared rate.
 struct DamperFlow {
   double impulse, energy;
 };

@@ -32,7 +32,7 @@ struct LaneGradients {
   }
 };
 
-/// The same, and where they mean nothing.
+/// Gradients, and a mask of the lanes in which they are not sound.
 template <int kEnds>
 struct FreshGradients : LaneGradients<kEnds> {
   LaneMask hard;
@@ -271,8 +271,8 @@ double dampAll(const DamperChain<Dampers>& chain, bool own, double* velocities) 
   return damp(chain, velocities);
 }
 
-// What a term takes out is what the torques do on its path, less what comes to be kinetic energy.
-// In the first one the torques' share of both is the same, and is left out of both.
+// The energy that a term takes out is the work of the torques on its path less the gain of kinetic
+// energy. In the first term the torques' share of both is equal and is left out of both.
 double addSeriesTerm(const DampedParticles& particles, const SeriesTerm& term, const double* last,
                      const double* rates, double* next) {
   Lanes taken = {};

@@ -11,8 +11,8 @@ namespace spherical_springs::core {
 
 inline constexpr std::uint32_t kNone = ~0u;
 
-/// What a kernel computes at once: an arc, a triangle with up to two arcs along its edges, or an
-/// oriented arc.
+/// The unit that a kernel computes at once: an arc, a triangle with up to two arcs along its edges,
+/// or an oriented arc.
 struct Element {
   std::array<std::uint32_t, 3> ends{kNone, kNone, kNone};  ///< places in the order of particles
   /// Indices of springs: of the arc; or of the triangle, of the arc from its first end to its

@@ -1,4 +1,4 @@
-// What springs hold and how they pull at some positions, several springs at a time.
+// Energies and torques of the springs at given positions, several springs at a time.
 #pragma once
 
 #include <vector>

@@ -1,13 +1,13 @@
-// What springs do to the particles of a patch.
+// Forces of the springs on the particles of a patch.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "stepping/step_kernels.h"
 #include "stepping/layout.h"
 #include "stepping/scratch.h"
+#include "stepping/step_kernels.h"
 
 namespace spherical_springs::core {
 

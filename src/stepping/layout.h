@@ -6,10 +6,10 @@
 #include <tuple>
 #include <vector>
 
-#include "stepping/step_kernels.h"
+#include "spherical_springs/system.h"
 #include "stepping/elements.h"
 #include "stepping/groups.h"
-#include "spherical_springs/system.h"
+#include "stepping/step_kernels.h"
 
 namespace spherical_springs::core {
 
@@ -46,7 +46,7 @@ class Layout {
   std::uint32_t rowCount() const { return row_count_; }
   std::uint32_t largestPatch() const { return largest_patch_; }  ///< [rows]
 
-  /// Of the particle that a guest is, its row at home.
+  /// For each ghost, the row of the owned copy.
   const std::vector<std::uint32_t>& guests() const { return guests_; }
   const GroupLists& groups() const { return groups_; }
 

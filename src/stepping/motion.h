@@ -60,7 +60,7 @@ class Motion {
   std::array<std::vector<double>, 3> velocities_;
   std::vector<double> inverse_masses_;
   std::vector<double> dissipated_;           // one a patch, only in a scene with damped particles
-  ViscousFlows viscous_flows_;               // likewise
+  ViscousFlows viscous_flows_;               // only in a scene with damped particles
   std::unique_ptr<DampedKick> damped_kick_;  // only in a scene with damped springs
 };
 

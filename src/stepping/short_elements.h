@@ -139,7 +139,7 @@ class ShortTriangles {
   Lanes pull_ab_[kMost], pull_bc_[kMost], pull_ca_[kMost];
 };
 
-/// The same for arcs alone.
+/// Forces of short arcs.
 class ShortArcs {
  public:
   using Group = Arcs;

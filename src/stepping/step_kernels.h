@@ -1,4 +1,4 @@
-// What a step computes, for several springs or particles at a time.
+// Kernels of a step, for several springs or particles at a time.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ template <class Group>
 using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
                                       const double* positions, double* forces, std::uint32_t* hard);
 
-/// Of the first spring of each element, and of the arcs along the edges of a triangle [J].
+/// Energies of the first springs of elements, and of the arcs along the edges of triangles [J].
 struct ElementEnergies {
   double first, arcs;
 };
@@ -52,8 +52,7 @@ using EnergyKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_
                                        const double* positions, std::uint32_t limit,
                                        ElementEnergies& energies, std::uint32_t* hard);
 
-/// What a kick over some time does to particles with viscous damping, as Damping::ViscousFlow has
-/// it: arrays over particles.
+/// The flow of viscous damping over a kick, as in Damping::ViscousFlow: arrays over particles.
 struct ViscousKick {
   const double* decay;
   const double* gain;
@@ -63,7 +62,8 @@ struct ViscousKick {
 /// Velocities under the forces for `duration` [s].
 using KickKernel = void (*)(const Particles& particles, double duration);
 
-/// The same with damping. @return the energy that it took out [J].
+/// Kicks particles with viscous damping.
+/// @return the energy that the damping took out [J].
 using ViscousKickKernel = double (*)(const Particles& particles, const ViscousKick& kick);
 
 /// Moves particles at their velocities for `duration` [s].
@@ -82,7 +82,7 @@ struct StepKernels {
   DampingKernels damping;  ///< of springs
 };
 
-/// Those for the widest instructions that this processor has.
+/// The kernels for the widest instructions that this processor has.
 const StepKernels& stepKernels();
 
 }  // namespace spherical_springs::core

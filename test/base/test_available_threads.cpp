@@ -1,4 +1,5 @@
-// What a process may use, by affinity and by quotas of control groups in made-up file systems.
+// Threads that a process may use, by affinity and by quotas of control groups in made-up file
+// systems.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// What must hold whatever came in.
+// Invariants that hold after any input.
 #pragma once
 
 #include <cmath>

@@ -12,7 +12,7 @@
 namespace spherical_springs::core {
 namespace {
 
-/// Of pairs of nodes, and of each node with itself.
+/// Graph of pairs of nodes, and of each node with itself.
 Graph graphOf(std::size_t nodes, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   std::vector<std::set<std::uint32_t>> neighbours(nodes);
   for (std::uint32_t i = 0; i < nodes; ++i) neighbours[i].insert(i);

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "support/mesh_scenes.h"
 #include "spherical_springs/maps/distortion.h"
+#include "support/mesh_scenes.h"
 
 namespace spherical_springs::mesh {
 namespace {
@@ -18,7 +18,7 @@ Vector3 flatAngles(const Vector3& a, const Vector3& b, const Vector3& c) {
   return {at(a, b, c), at(b, c, a), at(c, a, b)};
 }
 
-/// Of a spherical triangle, from its sides (L'Huilier's theorem).
+/// Area of a spherical triangle from its sides (L'Huilier's theorem).
 double areaFromSides(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double x = std::acos(b.dot(c)), y = std::acos(c.dot(a)), z = std::acos(a.dot(b));
   const double s = (x + y + z) / 2;

@@ -125,7 +125,7 @@ TEST(MapEnergy, IsInfiniteAtAFold) {
   EXPECT_LT(energy.valueAfter(step), 1e6);
 }
 
-/// Of which the bottom is nearly half of the sphere.
+/// The bottom face of the tetrahedron is nearly half of the sphere.
 TEST(MapEnergy, IsInfiniteAtAFaceOfHalfOfTheSphere) {
   const TriangleMesh mesh = testing::tetrahedron();
   const auto at = [&](double depth) {

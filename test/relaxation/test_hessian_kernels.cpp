@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "relaxation/hessian_kernels.h"
 #include "base/instruction_set.h"
+#include "relaxation/hessian_kernels.h"
 #include "relaxation/tangent_energy.h"
 #include "support/scenes.h"
 
@@ -112,8 +112,11 @@ struct Bench {
                                     {&restOf(springs[0]), sizeof(Spring)},
                                     {&springs[0].stiffness, sizeof(Spring)},
                                     {places.data(), sizeof(places[0])}};
-    const HessianArrays arrays = {at[0].frame.data(), free_count, gradient[0].data(),
-                                  hessian[0].data(), curvature == Curvature::definite,
+    const HessianArrays arrays = {at[0].frame.data(),
+                                  free_count,
+                                  gradient[0].data(),
+                                  hessian[0].data(),
+                                  curvature == Curvature::definite,
                                   leastCurvature(curvature)};
     const auto count = static_cast<std::uint32_t>(springs.size());
     left_out.resize(count);
@@ -164,8 +167,7 @@ struct Bench {
   }
 };
 
-constexpr Curvature kCurvatures[] = {Curvature::exact, Curvature::tempered,
-                                     Curvature::definite};
+constexpr Curvature kCurvatures[] = {Curvature::exact, Curvature::tempered, Curvature::definite};
 
 template <class Spring>
 class HessianKernelsOf : public ::testing::Test {
@@ -221,7 +223,7 @@ TYPED_TEST(HessianKernelsOf, LongSpringsAreLeftOut) {
   }
 }
 
-// Of whatever length: what is computed is right, and the rest is said to be left out.
+// Springs of any length are computed right, or reported as left out.
 TYPED_TEST(HessianKernelsOf, SpringsOfAnySizeAreRightOrLeftOut) {
   std::size_t left_out = 0, all = 0;
   for (const double size : {0.8, 0.55, 0.5, 0.4, 0.3}) {

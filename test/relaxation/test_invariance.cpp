@@ -1,10 +1,10 @@
-// What the result of a relaxation must not depend on.
+// Invariance of relaxations under rotations, order and units.
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
 
-#include "support/relaxation_scenes.h"
 #include "spherical_springs/relaxation.h"
+#include "support/relaxation_scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "support/relaxation_scenes.h"
 #include "spherical_springs/relaxation.h"
+#include "support/relaxation_scenes.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -86,7 +86,7 @@ TEST(TangentEnergy, ExpectedDropIsThatOfTheModel) {
   EXPECT_NEAR(energy.expectedDrop(step), expected, 1e-13 * std::abs(expected));
 }
 
-/// Of the Hessian, of its norm.
+/// Least eigenvalue of the Hessian, relative to its norm.
 double leastEigenvalue(const System& system, const Points& positions, Curvature curvature) {
   const auto energy = energyAt(system, positions, curvature);
   const Eigen::MatrixXd hessian = dense(energy.pattern(), energy.hessian());
@@ -130,7 +130,7 @@ TEST(TangentEnergy, MovesAlongTheSphereAndBack) {
   const Points moved = energy.positions();
   EXPECT_LT((moved.colwise().norm().array() - 1).abs().maxCoeff(), 1e-15);
   for (Eigen::Index i = 0; i < start.cols(); ++i) {
-    // By a tangent vector of length 0.3 sqrt(2), back along the radius.
+    // The tangent vector has the length 0.3 sqrt(2); the way back is along the radius.
     const double expected = system.pinned(i) ? 0 : std::atan(0.3 * std::sqrt(2));
     EXPECT_NEAR(arc(start.col(i), moved.col(i)).angle, expected, 1e-14);
   }

@@ -159,24 +159,6 @@ TEST(Runner, ShowsARelaxationUnderWayWithoutTouchingTheScene) {
   answer.get();
 }
 
-TEST(Simulation, ChangesOfNothingChangeNothing) {
-  Simulation simulation({});
-  const Scene random = testing::randomScene(7, 10, 10, 0.5, 1);
-  simulation.load({random, 0});
-  simulation.step(10);
-  const double dissipated = simulation.state().dissipated;
-  const auto account = simulation.account();
-  simulation.addParticles({});
-  simulation.setParticles({}, {});
-  simulation.removeParticles({});
-  simulation.addSprings({});
-  simulation.setSprings({}, {});
-  simulation.removeSprings({});
-  EXPECT_GT(dissipated, 0);
-  EXPECT_EQ(simulation.state().dissipated, dissipated);
-  EXPECT_EQ(simulation.account(), account);
-}
-
 TEST(Runner, ABadRequestToRelaxChangesNothing) {
   Runner runner({}, false);
   fill(runner, testing::randomScene(3, 10, 10, 0, 1));
@@ -188,39 +170,6 @@ TEST(Runner, ABadRequestToRelaxChangesNothing) {
   const auto after = runner.snapshot();
   EXPECT_EQ(before.state.angular_velocities, after.state.angular_velocities);
   EXPECT_EQ(before.account, after.account);
-}
-
-TEST(Simulation, ResetGoesBackToWhereParticlesWereAddedOrSet) {
-  Simulation simulation({});
-  const Scene random = testing::randomScene(4, 5, 0, 0, 1);
-  simulation.addParticles(random.particles().items());
-  for (int i = 0; i < 100; ++i) simulation.step();
-  simulation.setParticles({1}, {testing::particleAt({0, 0, 1})});
-  for (int i = 0; i < 100; ++i) simulation.step();
-  simulation.removeParticles({0});
-  simulation.reset();
-  EXPECT_EQ(simulation.state().time, 0);
-  EXPECT_EQ(simulation.state().positions.col(0), Vector3(0, 0, 1));
-  EXPECT_EQ(simulation.state().positions.col(1), random.particles().item(2).position);
-  EXPECT_EQ(simulation.state().angular_velocities.col(1),
-            random.particles().item(2).angular_velocity);
-}
-
-TEST(Simulation, KeepsGoingFromWhereItIsWhenTheSceneChanges) {
-  Simulation simulation({});
-  const Scene random = testing::randomScene(5, 5, 0, 0, 1);
-  simulation.addParticles(random.particles().items());
-  for (int i = 0; i < 100; ++i) simulation.step();
-  const Points before = simulation.state().positions;
-  simulation.addParticles({testing::particleAt({0, 0, 1})});
-  EXPECT_EQ(simulation.state().positions.leftCols(5), before);
-  AngleSpring spring = testing::angleSpring(0, 1, 0);
-  spring.at_rest = true;
-  SpringLists springs;
-  springs.get<AngleSpring>() = {spring};
-  simulation.addSprings(springs);
-  EXPECT_EQ(simulation.scene().springs<AngleSpring>().item(0).rest_angle,
-            arc(before.col(0), before.col(1)).angle);
 }
 
 }  // namespace

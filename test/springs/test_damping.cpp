@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "support/scenes.h"
 #include "spherical_springs/damping.h"
 #include "spherical_springs/system.h"
+#include "support/scenes.h"
 #include "support/trajectory.h"
 
 namespace spherical_springs::core {
@@ -60,7 +60,7 @@ TEST_P(Dampings, BySeriesAreAFlow) {
 }
 
 // The two ways of computing the flow agree to second order where both hold.
-// What dampers leave of so much faster a light particle is rounding, in any direction.
+// A light particle keeps only rounding of its velocity under fast dampers, in any direction.
 TEST_P(Dampings, FastOnesLeaveNothingAlongThePosition) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     testing::Random random(seed);

@@ -98,7 +98,7 @@ TEST(Evaluation, OfTheLargestTorqueIsFiniteWhereItsSquareOverflows) {
       testing::sceneOf({testing::particleAt({0.6, 0, 0.8}), testing::particleAt({1, 0, 0}),
                         testing::particleAt({-1, 1e-143, 0})},
                        springs);
-  const double torque = maxTorque(System(scene, System::Options()), testing::stateOf(scene));
+  const double torque = maxTorque(Plan(scene, System::Options()), testing::stateOf(scene));
   EXPECT_GT(torque, 1e160);
   EXPECT_TRUE(std::isfinite(torque)) << torque;
 }

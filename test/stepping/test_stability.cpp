@@ -107,7 +107,7 @@ TEST(LongRun, KeepsEnergyAndAngularMomentum) {
   }
 }
 
-// What dampers leave of so much faster a light particle is rounding, in any direction.
+// A light particle keeps only rounding of its velocity under fast dampers, in any direction.
 TEST(StrongDamping, OfALightParticleLeavesItOnTheSphere) {
   for (const char* method : {"euler", "verlet", "fourth_order", "implicit_euler"}) {
     for (unsigned seed = 1; seed <= 100; ++seed) {

@@ -238,7 +238,7 @@ TEST(Stepping, GivesTheSameBitsInAnyPortions) {
   }
 }
 
-/// The same scene sent in another order, triangles and arcs from another corner.
+/// A scene with its items sent in another order, triangles and arcs from another corner.
 struct Shuffled {
   std::vector<std::uint32_t> places;  // of each particle of the original
   Scene scene;

@@ -15,7 +15,7 @@ extern const StepKernels kAvx2StepKernels, kAvx512StepKernels;
 
 namespace testing {
 
-/// Those that this processor can run, from the narrowest to the widest.
+/// Kernels that this processor can run, from the narrowest to the widest.
 inline std::vector<const StepKernels*> stepKernelsHere() {
   std::vector<const StepKernels*> kernels = {&kPlainStepKernels};
 #if defined(__x86_64__)

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "system/alignment.h"
 #include "support/relaxation_scenes.h"
+#include "system/alignment.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -90,7 +90,7 @@ TEST(Alignment, TurnsAboutAPin) {
     const Points result = aligned(system, before, turn(angle, before.col(3)) * before);
     EXPECT_LT(distance(result, before), 4e-15) << angle;
   }
-  // Of any other change, the best of all turns about the pin.
+  // For any other change the result is the best of all turns about the pin.
   Points after = randomPoints(6, 9);
   after.col(3) = before.col(3);
   const Points result = aligned(system, before, after);

@@ -12,14 +12,14 @@ struct FaceDistortion {
   Points angle_changes;    ///< corner angles, flat, on the sphere minus those on the surface [rad]
 };
 
-/// Of a map, one unit vector a vertex, that wants `shares` [sr] for its faces: one a face,
-/// positive, summing to 4 pi. Angles are those of the flat triangles with the same corners, on both
-/// sides, as in the literature on conformal maps (Choi, Lam, Lui 2015, doi:10.1137/130950008). A
-/// triangle with two vertices on one spot has an angle of 0 there.
+/// Distortion of a map, one unit vector a vertex. `shares` [sr] are the areas wanted for the faces:
+/// one a face, positive, summing to 4 pi. Angles are those of the flat triangles with the same
+/// corners, on both sides, as in the literature on conformal maps (Choi, Lam, Lui 2015,
+/// doi:10.1137/130950008). A triangle with two vertices on one spot has an angle of 0 there.
 /// @throw std::invalid_argument where the sizes do not fit.
 FaceDistortion faceDistortion(const TriangleMesh& mesh, const ValuesRef& shares, const Points& map);
 
-/// What is said of a map in one line.
+/// Summary of the distortion of a map.
 struct Distortion {
   double spread = 0;        ///< standard deviation of the log area ratios
   double mean = 0;          ///< of their magnitudes
@@ -30,7 +30,7 @@ struct Distortion {
   double worst_angle = 0;   ///< the largest [rad]
 };
 
-/// Of one face or more.
+/// Summarises the distortion of one face or more.
 Distortion summary(const FaceDistortion& faces);
 
 }  // namespace spherical_springs::mesh

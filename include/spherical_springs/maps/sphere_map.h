@@ -41,8 +41,8 @@ struct MapOptions {
 /// one a face, positive and at most 45 % of the sphere, or for options outside their range; NoMap.
 Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const MapOptions& options = {});
 
-/// The same from a start, one vector a vertex, whose directions count. A start that is folded, or
-/// covers the sphere more than once, is passed over.
+/// Maps a mesh from a start, one vector a vertex, whose directions count. A start that is folded,
+/// or covers the sphere more than once, is passed over.
 /// @throw std::invalid_argument also for a start of another size, or with a vector that is zero or
 /// not finite.
 Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const Points& start,

@@ -23,7 +23,7 @@ struct TriangleMesh {
 /// One a face [m^2].
 Values faceAreas(const TriangleMesh& mesh);
 
-/// Of a closed mesh, negative where its faces look inwards [m^3].
+/// Volume of a closed mesh [m^3], negative where its faces look inwards.
 double volume(const TriangleMesh& mesh);
 
 }  // namespace spherical_springs::mesh

@@ -1,4 +1,4 @@
-// What every kind of spring answers: the condition it wants to be zero, and its derivatives.
+// The condition that a spring wants to be zero, and its derivatives.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct Condition {
 /// semidefinite.
 enum class Curvature { exact, tempered, definite };
 
-/// Of C H across an arc: what is lower counts as none.
+/// The least value of C H across an arc that counts; lower values are dropped.
 constexpr double leastCurvature(Curvature curvature) {
   constexpr double kTempered = -0.3;
   if (curvature == Curvature::definite) return 0;
