@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "spherical_springs/measures.h"
 #include "simulation/runner.h"
+#include "spherical_springs/measures.h"
 #include "spherical_springs/scene.h"
 
 namespace spherical_springs {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "node/conversion.h"
-#include "spherical_springs/range.h"
 #include "node/surviving.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs {
 namespace {

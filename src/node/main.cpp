@@ -14,11 +14,11 @@
 #include "node/request_memory.h"
 #include "node/scene_directory.h"
 #include "node/services.h"
-#include "spherical_springs/range.h"
-#include "simulation/runner.h"
-#include "spherical_springs/scene_file.h"
 #include "node/stepper.h"
 #include "node/surviving.h"
+#include "simulation/runner.h"
+#include "spherical_springs/range.h"
+#include "spherical_springs/scene_file.h"
 
 namespace spherical_springs {
 namespace {

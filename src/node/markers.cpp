@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "springs/strain.h"
 #include "geometry/tessellation.h"
+#include "springs/strain.h"
 
 namespace spherical_springs {
 namespace {

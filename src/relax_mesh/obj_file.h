@@ -6,8 +6,8 @@
 #include <ostream>
 
 #include "base/checkpoint.h"
-#include "spherical_springs/maps/triangle_mesh.h"
 #include "relax_mesh/texture_coordinates.h"
+#include "spherical_springs/maps/triangle_mesh.h"
 
 namespace spherical_springs::mesh {
 

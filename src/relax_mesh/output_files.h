@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 
 #include "relax_mesh/options.h"
+#include "relax_mesh/task.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/triangle_mesh.h"
-#include "relax_mesh/task.h"
 
 namespace spherical_springs::relax_mesh {
 

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "base/files.h"
+#include "maps/topological_sphere.h"
 #include "relax_mesh/face_files.h"
 #include "relax_mesh/interruption.h"
 #include "relax_mesh/obj_file.h"
 #include "spherical_springs/maps/sphere_map.h"
-#include "maps/topological_sphere.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "relaxation/descent.h"
 #include "relaxation/orientation_guard.h"
-#include "spherical_springs/system.h"
 #include "relaxation/torque_limit.h"
+#include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 

@@ -6,14 +6,14 @@
 #include <memory>
 #include <stdexcept>
 
-#include "system/alignment.h"
 #include "relaxation/damped_dynamics.h"
 #include "relaxation/fire.h"
+#include "relaxation/new_starts.h"
 #include "relaxation/newton.h"
 #include "relaxation/particle_stiffness.h"
 #include "relaxation/torque_limit.h"
-#include "relaxation/new_starts.h"
 #include "spherical_springs/range.h"
+#include "system/alignment.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "base/files.h"
 #include "scene/file_format.h"
-#include "spherical_springs/scene_file.h"
 #include "scene/text_writer.h"
+#include "spherical_springs/scene_file.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "springs/skew.h"
 #include "spherical_springs/springs/angle.h"
+#include "springs/skew.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "spherical_springs/system.h"
 #include "stepping/damping_kernels.h"
 #include "stepping/groups.h"
 #include "stepping/layout.h"
-#include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 

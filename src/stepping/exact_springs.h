@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "stepping/step_kernels.h"
 #include "spherical_springs/springs/kinds.h"
+#include "stepping/step_kernels.h"
 
 namespace spherical_springs::core {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "stepping/layout.h"
 #include "spherical_springs/damping.h"
+#include "stepping/layout.h"
 
 namespace spherical_springs::core {
 

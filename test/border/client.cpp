@@ -5,10 +5,10 @@
 #include <limits>
 #include <sstream>
 
+#include "geometry/tessellation.h"
 #include "layouts.h"
 #include "maps/topological_sphere.h"
 #include "springs/strain.h"
-#include "geometry/tessellation.h"
 
 namespace spherical_springs {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
+#include "simulation/runner.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/sphere_map.h"
-#include "simulation/runner.h"
 
 namespace spherical_springs {
 

@@ -7,11 +7,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "maps/topological_sphere.h"
 #include "relax_mesh/obj_file.h"
 #include "soundness.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/sphere_map.h"
-#include "maps/topological_sphere.h"
 
 using namespace spherical_springs;  // NOLINT: a program, not a header
 using core::fuzzing::require;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "support/scenes.h"
 #include "spherical_springs/sphere.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "support/scenes.h"
 #include "geometry/tessellation.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

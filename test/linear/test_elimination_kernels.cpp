@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "linear/elimination_kernels.h"
 #include "base/instruction_set.h"
+#include "linear/elimination_kernels.h"
 #include "support/scenes.h"
 
 namespace spherical_springs::core {

@@ -3,12 +3,12 @@
 
 #include <numeric>
 
-#include "support/hub_shapes.h"
-#include "maps/fold_free_start.h"
-#include "maps/map_energy.h"
 #include "linear/minimum_degree.h"
 #include "linear/multifrontal_cholesky.h"
+#include "maps/fold_free_start.h"
+#include "maps/map_energy.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "support/hub_shapes.h"
 
 namespace spherical_springs::core {
 namespace {

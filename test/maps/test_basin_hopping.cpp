@@ -3,12 +3,12 @@
 
 #include <set>
 
-#include "support/hub_shapes.h"
 #include "maps/basin_hopping.h"
 #include "maps/coverage.h"
 #include "maps/map_clock.h"
 #include "maps/map_descent.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "support/hub_shapes.h"
 
 namespace spherical_springs::mesh {
 namespace {

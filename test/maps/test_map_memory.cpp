@@ -4,11 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "support/failing_malloc.h"
 #include "maps/coverage.h"
 #include "maps/map_energy.h"
-#include "support/shapes.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "support/failing_malloc.h"
+#include "support/shapes.h"
 
 namespace spherical_springs::mesh {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "support/hub_shapes.h"
 #include "maps/coverage.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "support/hub_shapes.h"
 
 namespace spherical_springs::mesh {
 namespace {

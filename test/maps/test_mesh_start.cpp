@@ -4,14 +4,14 @@
 #include <Eigen/LU>
 #include <set>
 
-#include "support/hub_shapes.h"
 #include "maps/coverage.h"
 #include "maps/decimation.h"
 #include "maps/fold_free_start.h"
 #include "maps/insertion.h"
 #include "maps/schnyder_wood.h"
-#include "spherical_springs/maps/sphere_map.h"
 #include "maps/topological_sphere.h"
+#include "spherical_springs/maps/sphere_map.h"
+#include "support/hub_shapes.h"
 
 namespace spherical_springs::mesh {
 namespace {

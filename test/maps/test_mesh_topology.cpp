@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "maps/half_edges.h"
-#include "support/shapes.h"
-#include "spherical_springs/maps/sphere_map.h"
 #include "maps/topological_sphere.h"
+#include "spherical_springs/maps/sphere_map.h"
+#include "support/shapes.h"
 
 namespace spherical_springs::mesh {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "support/scenes.h"
 #include "node/markers.h"
+#include "support/scenes.h"
 
 namespace spherical_springs {
 namespace {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "support/mesh_scenes.h"
 #include "relax_mesh/obj_file.h"
+#include "support/mesh_scenes.h"
 
 namespace spherical_springs::mesh {
 namespace {

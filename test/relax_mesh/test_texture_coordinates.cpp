@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "support/mesh_scenes.h"
 #include "relax_mesh/texture_coordinates.h"
+#include "support/mesh_scenes.h"
 
 namespace spherical_springs::mesh {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "relaxation/torque_limit.h"
-#include "support/relaxation_scenes.h"
 #include "spherical_springs/relaxation.h"
+#include "support/relaxation_scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "meshes.h"
-#include "support/scenes.h"
 #include "spherical_springs/relaxation.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "spherical_springs/relaxation.h"
 #include "support/relaxation_scenes.h"
 #include "support/scenes.h"
-#include "spherical_springs/relaxation.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "support/scenes.h"
 #include "spherical_springs/scene_file.h"
 #include "spherical_springs/simulation.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "support/scenes.h"
 #include "spherical_springs/scene.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "support/scenes.h"
 #include "spherical_springs/scene_file.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

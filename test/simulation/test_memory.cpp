@@ -6,10 +6,10 @@
 #include <sstream>
 #include <thread>
 
-#include "support/failing_malloc.h"
-#include "support/relaxation_scenes.h"
 #include "simulation/runner.h"
 #include "spherical_springs/simulation.h"
+#include "support/failing_malloc.h"
+#include "support/relaxation_scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "support/scenes.h"
 #include "spherical_springs/sphere.h"
 #include "spherical_springs/springs/solid_angle.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

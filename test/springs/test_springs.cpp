@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "support/scenes.h"
 #include "spherical_springs/springs/kinds.h"
+#include "support/scenes.h"
 
 namespace spherical_springs::core {
 namespace {

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <vector>
 
+#include "stepping/damper_layout.h"
 #include "support/scenes.h"
 #include "support/step_levels.h"
-#include "stepping/damper_layout.h"
 
 namespace spherical_springs::core {
 namespace {
