@@ -9,13 +9,32 @@
 #include <system_error>
 
 #include "node/throttle.h"
+#include "simulation/runner.h"
 
 namespace spherical_springs {
+
+inline const char* wordsFor(core::Refusal::Reason reason) {
+  using Reason = core::Refusal::Reason;
+  switch (reason) {
+    case Reason::stepping:
+      return "a ~step is under way; wait for it or end it by ~cancel";
+    case Reason::relaxing:
+      return "a ~relax is under way; wait for it or end it by ~cancel";
+    case Reason::running:
+      return "the simulation is running; pause it first by ~set_running";
+    case Reason::closed:
+      return "the node is shutting down";
+  }
+  return "";
+}
 
 /// Says what went wrong, in words for the log and for answers.
 inline const char* reasonOf(const std::exception& fault) {
   if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr) {
     return "there is not enough memory for this";
+  }
+  if (const auto* refusal = dynamic_cast<const core::Refusal*>(&fault)) {
+    return wordsFor(refusal->reason());
   }
   const auto* error = dynamic_cast<const std::system_error*>(&fault);
   if (error != nullptr && error->code() == std::errc::resource_unavailable_try_again) {

@@ -20,6 +20,9 @@ class DampedDynamics : public Descent {
   DampedDynamics(const System& system, OrientationGuard* guard, const TorqueLimit& limit);
   void place(const Points& positions) override;
   bool iterate() override;
+  const char* whyStuck() const override {
+    return "20000 steps brought the largest torque no nearer to the tolerance";
+  }
   Points positions() const override { return state_.positions; }
   double value() const override { return value_; }
   double maxTorque() const override { return max_torque_; }

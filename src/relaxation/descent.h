@@ -17,6 +17,9 @@ class Descent {
   /// @return false when the method gets no further.
   virtual bool iterate() = 0;
 
+  /// Says what has ended a descent that gets no further, for a message.
+  virtual const char* whyStuck() const = 0;
+
   virtual Points positions() const = 0;  ///< of all particles, in the order of their ids
   virtual double value() const = 0;      ///< energy [J]
   virtual double maxTorque() const = 0;  ///< on a free particle [N m]

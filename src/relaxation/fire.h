@@ -18,6 +18,9 @@ class Fire : public Descent {
       : system_(system), guard_(guard), limit_(limit) {}
   void place(const Points& positions) override;
   bool iterate() override;
+  const char* whyStuck() const override {
+    return "20000 iterations brought the largest torque no nearer to the tolerance";
+  }
   Points positions() const override { return positions_; }
   double value() const override { return value_; }
   double maxTorque() const override;

@@ -11,9 +11,12 @@
 
 namespace spherical_springs::core {
 
-/// Whether drops of the energy become far smaller, as where the model is as good as exact; much
-/// smaller, or larger again, as where triangles unfold; or neither.
-enum class Pace { near_end, good, poor };
+/// Judgement of a drop of the energy by the ratio to the drop before it.
+enum class Pace {
+  near_end,  ///< below 0.005: the model is as good as exact
+  good,      ///< below 0.25, or above 1, as where triangles unfold
+  poor       ///< from 0.25 to 1
+};
 
 /// Newton's method, with the shift of Levenberg and Marquardt where the energy is not as its
 /// quadratic model has it, and steps along directions of negative curvature within a radius.
@@ -42,6 +45,7 @@ class Newton : public Descent {
 
   void place(const Points& positions) override;
   bool iterate() override;
+  const char* whyStuck() const override;
   Points positions() const override { return energy_.positions(); }
   double value() const override { return energy_.unit() * energy_.value(); }
   double maxTorque() const override { return energy_.maxTorque(); }
@@ -77,7 +81,7 @@ class Newton : public Descent {
   double allowedShare(const Eigen::VectorXd& step);
   Trial tryStep(const ModelMinimum& minimum);
   void correct();
-  bool creeps();
+  bool creepsOn();
   void scaleToHere();
 
   int threads_;
@@ -98,6 +102,7 @@ class Newton : public Descent {
   double earlier_drop_ = 0;
   Pace pace_ = Pace::good;
   double earlier_value_ = 0;
+  bool creeps_ = false;
 };
 
 }  // namespace spherical_springs::core

@@ -177,7 +177,7 @@ class Relaxation {
 
   void giveUp() {
     const std::string undefined = undefinedSpring(system_, result_.positions);
-    std::string reason = "a long series of steps gained next to nothing";
+    std::string reason = descent_->whyStuck();
     if (options_.keep_orientation && guard_.tightest()) {
       reason = nameOf<SolidAngleSpring>(system_, *guard_.tightest()) + " would fold";
     } else if (!undefined.empty()) {

@@ -28,9 +28,9 @@ class Runner::Busy {
     const Lock lock(runner_.mutex_);
     runner_.requireIdle();
     const ControlLock control(runner_.control_);
-    if (runner_.closed_) throw std::runtime_error("the node is shutting down");
+    if (runner_.closed_) throw Refusal(Refusal::Reason::closed);
     if (activity == Activity::stepping && runner_.running_) {
-      throw std::runtime_error("the simulation is running; pause it first by ~set_running");
+      throw Refusal(Refusal::Reason::running);
     }
     runner_.activity_ = activity;
     runner_.relax_progress_ = 0;
@@ -55,9 +55,8 @@ Activity Runner::activity() const {
 
 void Runner::requireIdle() const {
   const Activity now = activity();
-  if (now == Activity::none) return;
-  const std::string what = now == Activity::relaxing ? "~relax" : "~step";
-  throw std::runtime_error("a " + what + " is under way; wait for it or end it by ~cancel");
+  if (now == Activity::relaxing) throw Refusal(Refusal::Reason::relaxing);
+  if (now == Activity::stepping) throw Refusal(Refusal::Reason::stepping);
 }
 
 void Runner::setRunning(bool running) {

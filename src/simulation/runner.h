@@ -30,6 +30,20 @@ class FairMutex {
 
 enum class Activity { none, stepping, relaxing };
 
+/// Refuses a call that does not go with what the runner does at the time.
+class Refusal : public std::runtime_error {
+ public:
+  enum class Reason { stepping, relaxing, running, closed };
+
+  explicit Refusal(Reason reason)
+      : std::runtime_error("the runner is stepping, relaxing, running or closed"),
+        reason_(reason) {}
+  Reason reason() const { return reason_; }
+
+ private:
+  Reason reason_;
+};
+
 /// Steps and relaxes a simulation, and lets others read it meanwhile: stepping pauses for them
 /// every few milliseconds; a relaxation works on a copy, on a thread of its own, and shows how far
 /// it has come. Changes are refused until either ends. All functions may be called from any thread.
@@ -48,7 +62,7 @@ class Runner {
   }
 
   /// `change(simulation)`; returns what it returns.
-  /// @throw std::runtime_error while a step or relaxation is under way, and what `change` throws.
+  /// @throw Refusal while a step or relaxation is under way, and what `change` throws.
   template <class Change>
   auto change(const Change& change) {
     const std::lock_guard<FairMutex> lock(mutex_);
@@ -56,7 +70,7 @@ class Runner {
     return change(simulation_);
   }
 
-  /// @throw std::runtime_error while a step or relaxation is under way.
+  /// @throw Refusal while a step or relaxation is under way.
   void setRunning(bool running);
 
   /// Up to `steps` steps in the time that `wall_time` [s] allows, if running and idle.
@@ -64,10 +78,10 @@ class Runner {
   std::uint64_t advance(std::uint64_t steps, double wall_time);
 
   /// Exactly `steps` steps, unless cancelled.
-  /// @return how many were done. @throw std::runtime_error unless paused and idle.
+  /// @return how many were done. @throw Refusal unless paused and idle.
   std::uint64_t step(std::uint64_t steps);
 
-  /// @throw std::runtime_error while another is under way, std::invalid_argument for bad options.
+  /// @throw Refusal while another is under way, std::invalid_argument for bad options.
   RelaxationResult relax(const RelaxationOptions& options);
 
   /// Ends a step or relaxation under way at its best state so far, at rest. Never waits for it, nor

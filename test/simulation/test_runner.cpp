@@ -42,10 +42,10 @@ INSTANTIATE_TEST_SUITE_P(Both, BusyRunner,
 
 TEST_P(BusyRunner, AnswersReadersRefusesChangesAndEndsAtRest) {
   EXPECT_EQ(runner_.read([](const Simulation& s) { return s.scene().particles().size(); }), 100);
-  EXPECT_THROW(runner_.change([](Simulation& s) { s.clear(); }), std::runtime_error);
-  EXPECT_THROW(runner_.setRunning(true), std::runtime_error);
-  EXPECT_THROW(runner_.step(1), std::runtime_error);
-  EXPECT_THROW(runner_.relax({}), std::runtime_error);
+  EXPECT_THROW(runner_.change([](Simulation& s) { s.clear(); }), Refusal);
+  EXPECT_THROW(runner_.setRunning(true), Refusal);
+  EXPECT_THROW(runner_.step(1), Refusal);
+  EXPECT_THROW(runner_.relax({}), Refusal);
   EXPECT_EQ(runner_.advance(10, 1), 0);
   EXPECT_EQ(runner_.snapshot().activity, GetParam());
 
@@ -61,14 +61,14 @@ TEST_P(BusyRunner, AnswersReadersRefusesChangesAndEndsAtRest) {
 TEST_P(BusyRunner, EndsWhenClosedAndBeginsNothingMore) {
   runner_.close();
   work_.get();
-  EXPECT_THROW(runner_.step(1), std::runtime_error);
-  EXPECT_THROW(runner_.relax({}), std::runtime_error);
+  EXPECT_THROW(runner_.step(1), Refusal);
+  EXPECT_THROW(runner_.relax({}), Refusal);
   EXPECT_EQ(runner_.read([](const Simulation& s) { return s.scene().particles().size(); }), 100);
 }
 
 TEST(Runner, StepsExactlyWhilePausedOnly) {
   Runner runner({}, true);
-  EXPECT_THROW(runner.step(3), std::runtime_error);
+  EXPECT_THROW(runner.step(3), Refusal);
   runner.setRunning(false);
   EXPECT_EQ(runner.step(3), 3);
   EXPECT_EQ(runner.snapshot().state.steps, 3);

@@ -66,7 +66,7 @@ TEST(Simulation, KeepsItsPlanWhenParticlesAreMoved) {
   const auto plan = simulation.plan();
   const Points before = simulation.state().positions;
   Particle moved = scene.particles().item(3);
-  moved.position = testing::particleAt({1, 2, 3}).position;
+  moved.position = Vector3(1, 2, 2) / 3;
   simulation.setParticles({3}, {moved});
   EXPECT_EQ(simulation.plan(), plan);
   EXPECT_EQ(simulation.state().positions.col(3), moved.position);
