@@ -129,7 +129,7 @@ TEST(Border, SystemsEvaluate) {
   const System system(sceneAtCorners(0.1), {});
   EXPECT_EQ(system.masses(), Values::Ones(3));
   EXPECT_NEAR(system.potential(kCorners).total(), energyAtCorners(), 1e-12);
-  EXPECT_GT(highestFrequency(system, kCorners), 1);
+  EXPECT_LT(stableTimeStep(system, IntegrationMethod::verlet, kCorners), 2);
   System::Workspace workspace;
   for (int i = 0; i < 50; ++i) {
     workspace.torques.resize(3, i);
@@ -144,17 +144,17 @@ TEST(Border, SystemsEvaluate) {
 }
 
 TEST(Border, StatesStep) {
-  const auto system = std::make_shared<const System>(sceneAtCorners(), System::Options());
+  const auto plan = std::make_shared<const Plan>(sceneAtCorners(), System::Options());
   for (const auto method : {IntegrationMethod::verlet, IntegrationMethod::implicit_euler}) {
     State state;
     state.positions = kCorners;
     state.angular_velocities = Points::Zero(3, 3);
-    Account account(*system, state);
-    const auto integrator = makeIntegrator(system, method, 1e-4);
+    Account account(*plan, state);
+    const auto integrator = makeIntegrator(plan, method, 1e-4);
     for (int i = 0; i < 50; ++i) integrator->step(state);
     EXPECT_EQ(state.steps, 50);
-    EXPECT_LT(account.energyError(energies(*system, state)), 1e-3);
-    EXPECT_GT(energies(*system, state).kinetic, 1e-6);
+    EXPECT_LT(account.energyError(energies(*plan, state)), 1e-3);
+    EXPECT_GT(energies(*plan, state).kinetic, 1e-6);
     EXPECT_LT(normError(state), 1e-12);
   }
 }

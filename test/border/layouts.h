@@ -39,6 +39,7 @@ constexpr TypeLayout kLayouts[] = {
     layoutOf<core::Damping>("Damping"),
     layoutOf<core::System>("System"),
     layoutOf<core::System::Workspace>("System::Workspace"),
+    layoutOf<core::Plan>("Plan"),
     layoutOf<core::State>("State"),
     layoutOf<core::Account>("Account"),
     layoutOf<core::Measures>("Measures"),
