@@ -40,13 +40,18 @@ def rim(axes):
 
 
 def ball(axes, eye, colour, pixels=300):
-    """The unit sphere, shaded, with a net of meridians and parallels every 30 degrees."""
+    """The unit sphere, shaded, with its net."""
     x, y = np.meshgrid(*2 * [np.linspace(-1, 1, pixels)])
     z = np.sqrt(np.clip(1 - x ** 2 - y ** 2, 0, 1))
     shade = 0.72 + 0.28 * np.clip(np.stack([x, y, z], axis=2) @ LIGHT, 0, 1)
     image = np.clip(shade[..., None] * colour, 0, 1)
     disc = axes.imshow(image, extent=(-1, 1, -1, 1), origin="lower", interpolation="bilinear")
     disc.set_clip_path(rim(axes))
+    net(axes, eye)
+
+
+def net(axes, eye):
+    """Meridians and parallels every 30 degrees."""
     turn = np.linspace(-np.pi, np.pi, 181)
     for angle in np.radians(np.arange(-60, 90, 30)):
         parallel = np.stack([np.cos(angle) * np.cos(turn), np.cos(angle) * np.sin(turn),
