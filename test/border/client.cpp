@@ -184,11 +184,11 @@ TEST(Border, RunnersRun) {
   EXPECT_EQ(runner.step(100), 100);
   const Runner::Snapshot moving = runner.snapshot();
   EXPECT_EQ(moving.state.steps, 100);
-  EXPECT_NEAR(energies(*moving.system, moving.state).total(), energyAtCorners(), 1e-3);
+  EXPECT_NEAR(energies(*moving.plan, moving.state).total(), energyAtCorners(), 1e-3);
   EXPECT_TRUE(runner.relax({}).converged);
   const Runner::Snapshot relaxed = runner.snapshot();
   expectRelaxed(relaxed.state.positions);
-  EXPECT_LT(maxTorque(*relaxed.system, relaxed.state), 1e-7);
+  EXPECT_LT(maxTorque(*relaxed.plan, relaxed.state), 1e-7);
   EXPECT_EQ(runner.present().scene.particles().item(2).position, relaxed.state.positions.col(2));
 }
 
