@@ -17,10 +17,11 @@ inline constexpr std::uint32_t kLargestId = 4294967294, kLargestChosenId = 40000
 template <class Item>
 class IdTable {
  public:
-  const std::vector<std::uint32_t>& ids() const { return ids_; }
-  const std::vector<Item>& items() const { return items_; }
-  std::size_t size() const { return items_.size(); }
-  std::uint32_t nextId() const { return next_id_; }
+  const std::vector<std::uint32_t>& ids() const { return ids_; }  ///< rising
+  const std::vector<Item>& items() const { return items_; }       ///< in the order of their ids
+  std::size_t size() const { return items_.size(); }              ///< number of items
+  std::uint32_t nextId() const { return next_id_; }               ///< the id that `add` will give
+  /// Item at an index below `size()`.
   Item& item(std::size_t index) { return items_[index]; }
   const Item& item(std::size_t index) const { return items_[index]; }
 
@@ -38,6 +39,7 @@ class IdTable {
     reserveFor(items_, count);
   }
 
+  /// Adds under the next id, and returns it.
   std::uint32_t add(const Item& item) { return add(next_id_, item); }
 
   /// Adds under an id that is not below `nextId()`.

@@ -10,6 +10,7 @@
 
 namespace spherical_springs::core {
 
+/// Methods of stepping; doc/mathematics.md says more of each.
 enum class IntegrationMethod {
   euler,          ///< the report's (section 5): speed first, then position; first order, symplectic
   verlet,         ///< Strang's splitting; second order, symplectic
@@ -17,10 +18,11 @@ enum class IntegrationMethod {
   implicit_euler  ///< first order; stable for any step, and takes energy out
 };
 
-/// `name`: "euler", "verlet", "fourth_order" or "implicit_euler".
+/// Returns the method of a name: "euler", "verlet", "fourth_order" or "implicit_euler".
 /// @throw std::invalid_argument for any other name.
 IntegrationMethod integrationMethod(const std::string& name);
 
+/// Order of accuracy of the method in the time step.
 int orderOf(IntegrationMethod method);
 
 /// Largest product of a frequency [rad/s] and a time step [s] that the method bears; infinite for
@@ -39,6 +41,7 @@ class Integrator {
   /// Takes over a state.
   virtual void take(const State& state) = 0;
 
+  /// Takes so many steps of the state: all of them, or none where it throws.
   virtual void advance(std::uint64_t steps) = 0;
 
   /// Puts the present state into `state`.
@@ -52,7 +55,9 @@ class Integrator {
   }
 };
 
-/// `time_step`: [s], above 0.
+/// Makes an integrator of a method, with all the memory that its steps need. `time_step`: [s],
+/// above 0.
+/// @throw std::bad_alloc.
 std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const Plan> plan,
                                            IntegrationMethod method, double time_step);
 

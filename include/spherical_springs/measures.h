@@ -11,19 +11,22 @@
 
 namespace spherical_springs::core {
 
+/// Energies of a state.
 struct Energies {
-  PotentialEnergies by_kind;  ///< [J]
-  double kinetic = 0;         ///< [J]
-  double dissipated = 0;      ///< since the account began [J]
-  double potential() const { return by_kind.total(); }
-  double total() const { return kinetic + potential(); }
+  PotentialEnergies by_kind;                              ///< [J]
+  double kinetic = 0;                                     ///< [J]
+  double dissipated = 0;                                  ///< since the account began [J]
+  double potential() const { return by_kind.total(); }    ///< [J]
+  double total() const { return kinetic + potential(); }  ///< [J], without `dissipated`
 };
 
+/// Sums the energies of all springs and particles.
 Energies energies(const Plan& plan, const State& state);
 
 /// Conserved quantities when the account began, and their change since. For many threads.
 class Account {
  public:
+  /// Begins at a state.
   Account(const Plan& plan, const State& state);
 
   /// |total + dissipated - its value at the beginning| / the largest total since.
@@ -52,6 +55,7 @@ struct Measures {
   std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
 };
 
+/// Measures a state, and what a step of `time_step` [s] from there costs in accuracy.
 Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
                  double time_step, const State& state, Account& account);
 

@@ -12,13 +12,15 @@ class NonFinite : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
+/// Allowed values, from `low`, or above it where that end is open, to `high`.
 struct Range {
   double low, high;
   const char* allowed;  ///< the range in words, for messages
   bool open_low = false;
 
+  /// Whether a value is allowed; no NaN is.
   bool contains(double value) const {
-    return (open_low ? value > low : value >= low) && value <= high;  // false for NaN
+    return (open_low ? value > low : value >= low) && value <= high;
   }
 };
 
@@ -31,10 +33,10 @@ inline constexpr double kFastest = 1e100;
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".
 std::string toText(double value);
 
-/// Control characters, ends of lines among them, become `?`.
+/// Replaces control characters, ends of lines among them, by `?`.
 std::string onOneLine(std::string text);
 
-/// On one line, and of a long text the beginning.
+/// Text on one line; a long text is cut.
 std::string shortened(const std::string& text);
 
 /// Text for a message between quotes; a long text is cut, and its length told.

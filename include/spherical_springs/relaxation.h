@@ -17,12 +17,13 @@ enum class RelaxationMethod {
   fire       ///< the fast inertial relaxation engine, a quicker way of that
 };
 
-/// `name`: "newton", "dynamics", "fire", or empty for the default, newton.
+/// Returns the method of a name: "newton", "dynamics", "fire", or empty for the default, newton.
 /// @throw std::invalid_argument for any other name.
 RelaxationMethod relaxationMethod(const std::string& name);
 
+/// The outcome of a relaxation.
 struct RelaxationResult {
-  Points positions;
+  Points positions;        ///< one unit vector a particle, in the order of ids
   bool converged = false;  ///< the torque is within the tolerance, at a minimum of the energy
   std::uint32_t iterations = 0;
   double energy_before = 0, energy_after = 0;  ///< potential [J]
@@ -30,11 +31,13 @@ struct RelaxationResult {
   std::string message;                         ///< why it ended
 };
 
+/// How far a relaxation has come.
 struct RelaxationProgress {
   const RelaxationResult& best;  ///< what it would be if it ended now
   double fraction;               ///< of the way, from 0 to 1, by the logarithm of the torque
 };
 
+/// Choices of a relaxation.
 struct RelaxationOptions {
   RelaxationMethod method = RelaxationMethod::newton;
   /// Largest torque left on a free particle [N m]; 0: 1e-9 of the stiffness that the particle
@@ -57,12 +60,12 @@ RelaxationResult unrelaxed(const System& system, const Points& positions);
 
 class Newton;
 
-/// Relaxes one system after another. One that starts where the last one ended, with the same
-/// springs but for their rest and small changes of stiffness, goes on with what was prepared for
-/// that. For one thread at a time.
+/// Relaxes one system after another. Reuses the last preconditioner if the start equals the last
+/// result, the topology is unchanged and no stiffness has changed by more than a factor of 2. For
+/// one thread at a time.
 class Relaxer {
  public:
-  Relaxer();
+  Relaxer();  ///< with nothing prepared
   ~Relaxer();
 
   /// Moves free particles from `positions` to a minimum of the potential energy. A start on a

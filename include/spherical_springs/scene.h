@@ -14,13 +14,16 @@
 
 namespace spherical_springs::core {
 
+/// A particle as a caller describes it. The scene makes the position a unit vector and the angular
+/// velocity normal to it.
 struct Particle {
   Vector3 position = Vector3::Zero();          ///< any finite non-zero vector before the door
   Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s]
   double mass = 0;                             ///< [kg]; 0 means 1 before the door
   double damping = 0;                          ///< [N m s/rad]
-  bool pinned = false;
+  bool pinned = false;                         ///< never moves by itself
 
+  /// Calls `visit(name, value, range)` for each number that has a range of allowed values.
   template <class P, class Visitor>
   static void visitFields(P& particle, Visitor&& visit) {
     visit("mass", particle.mass,
@@ -29,12 +32,13 @@ struct Particle {
   }
 };
 
+/// How many items a scene may hold.
 struct SceneLimits {
   /// As many as indices of 32 bits can tell apart; limits above count as these.
   static constexpr std::size_t kMostParticles = 400'000'000, kMostSprings = 600'000'000;
 
   std::size_t particles = 20'000'000;
-  std::size_t springs = 100'000'000;
+  std::size_t springs = 100'000'000;  ///< of all kinds together
 
   /// These limits where indices hold so many, and else as many as they hold.
   SceneLimits heldByIndices() const {
@@ -48,6 +52,7 @@ struct SceneLimits {
 /// they were last added or set.
 class Scene {
  public:
+  /// An empty scene.
   explicit Scene(SceneLimits limits = {}) : limits_(limits.heldByIndices()) {}
 
   /// A whole scene under ids of the caller's choice, each list rising. Springs that ask for it take
@@ -57,19 +62,22 @@ class Scene {
         std::vector<Particle> particles, const SpringIds& spring_ids, SpringLists springs);
 
   const IdTable<Particle>& particles() const { return particles_; }
+  /// Springs of a kind, whose `particles` are ids.
   template <class Spring>
   const IdTable<Spring>& springs() const {
     return springs_.get<Spring>();
   }
-  std::size_t springCount() const;
+  std::size_t springCount() const;  ///< of all kinds together
 
-  /// @return the new ids.
+  /// Adds particles.
+  /// @return their ids, in the order of `particles`.
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
 
   struct Setting {
     std::vector<std::size_t> indices;  ///< of the particles that were set
     bool only_moved = true;            ///< whether masses, damping and pins are as they were
   };
+  /// Puts new values under old ids, one particle for each id.
   Setting setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
 
   struct Removal {
@@ -81,8 +89,11 @@ class Scene {
 
   /// `positions`: of the particles at present, one column each in the order of ids, from which
   /// springs that ask for it take their rest values.
+  /// @return the ids of the springs, in the order of the lists.
   SpringIds addSprings(SpringLists springs, const Points& positions);
+  /// Puts new values under old ids, one spring for each id; `positions` as in `addSprings`.
   void setSprings(const SpringIds& ids, SpringLists springs, const Points& positions);
+  /// Removes springs; no id may be given twice.
   void removeSprings(const SpringIds& ids);
 
   /// Puts the particles elsewhere: one column each, unit positions and the angular velocities

@@ -25,35 +25,49 @@ class Simulation {
     SceneLimits limits;
   };
 
+  /// An empty scene at time 0.
   explicit Simulation(const Settings& settings);
 
+  /// As Scene::addParticles; the others keep the places that they have come to.
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
+  /// As Scene::setParticles; what is compiled for stepping is kept if masses, damping and pins are
+  /// as they were.
   void setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
-  std::size_t removeParticles(const std::vector<std::uint32_t>& ids);  ///< @return springs removed
+  /// As Scene::removeParticles.
+  /// @return how many springs went with them.
+  std::size_t removeParticles(const std::vector<std::uint32_t>& ids);
+  /// As Scene::addSprings, with rest values taken from where the particles are now.
   SpringIds addSprings(SpringLists springs);
+  /// As Scene::setSprings, with rest values taken from where the particles are now.
   void setSprings(const SpringIds& ids, SpringLists springs);
   void removeSprings(const SpringIds& ids);
 
-  void clear();               ///< No particles, no springs, time 0.
-  void reset();               ///< Every particle where it was last added or set, time 0.
-  void load(SceneFile file);  ///< In place of the present scene.
+  void clear();  ///< Removes all particles and springs, and sets the time to 0.
+  void reset();  ///< Puts every particle where it was last added or set, and sets the time to 0.
+
+  /// Replaces the scene and its time.
+  /// @throw std::invalid_argument as Scene::reserveIdsOf does.
+  void load(SceneFile file);
 
   /// Steps of the settings' time step: all of them, or none where memory runs out.
   void step(std::uint64_t steps = 1);
 
-  /// Puts the particles, at rest, where a relaxation has brought them. Changes nothing, not even
-  /// the account, where they are there and at rest already.
+  /// Puts the particles, at rest, at `positions`, where a relaxation has brought them: one unit
+  /// vector a particle, in the order of ids. Changes nothing, not even the account, where they are
+  /// there and at rest already.
   void settle(const Points& positions);
 
-  /// Puts back an earlier state of the same scene.
+  /// Puts back an earlier state of the same scene, with as many particles.
   void restore(State state);
 
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return scene_; }
-  const State& state() const;
+  const State& state() const;  ///< where the particles are now
   Scene presentScene() const;  ///< with the particles where they are now
 
+  /// Returns the scene as it is compiled, which is done when it is first asked for after a change.
   std::shared_ptr<const Plan> plan();
+  /// Returns the account of energy, which begins at the first call after a change.
   std::shared_ptr<Account> account();
 
   /// The account without making it: null until something has asked for it.

@@ -8,9 +8,9 @@ namespace spherical_springs::core {
 
 /// How far stepping has come.
 struct Progress {
-  double time = 0;           ///< simulated [s]
-  double time_rounding = 0;  ///< what adding up the steps has rounded away of the time [s]
-  std::uint64_t steps = 0;   ///< since time was last 0
+  double time = 0;                      ///< simulated [s]
+  double time_rounding = 0;             ///< rounding error of `time`, kept by Kahan's summation [s]
+  std::uint64_t steps = 0;              ///< since time was last 0
   std::uint64_t unconverged_steps = 0;  ///< of an implicit method, since the time was last 0
   double dissipated = 0;                ///< energy taken out by damping since the account began [J]
 };

@@ -23,23 +23,25 @@ struct EnergyOf {
 
 /// Energy stored in the springs of each kind.
 struct PotentialEnergies : PerKind<EnergyOf> {
-  double total() const;
+  double total() const;  ///< [J]
 };
 
 /// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
 /// of their ids, and springs name particles by index.
 class System {
  public:
+  /// Choices that concern all springs and particles.
   struct Options {
     SpringDamping spring_damping = SpringDamping::relative;
     int threads = 1;  ///< results do not depend on it, to the last bit
   };
 
+  /// Compiles a scene. `options.threads`: at least 1.
   System(const Scene& scene, Options options);
 
   Eigen::Index particleCount() const { return masses_.size(); }
-  const Values& masses() const { return masses_; }
-  const Values& inverseMasses() const { return inverse_masses_; }  ///< 0 where pinned
+  const Values& masses() const { return masses_; }                 ///< [kg]
+  const Values& inverseMasses() const { return inverse_masses_; }  ///< [1/kg], 0 where pinned
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
   /// Whether a spring ends at a particle.
   bool joined(Eigen::Index particle) const {
@@ -49,9 +51,10 @@ class System {
   SpringDamping springDamping() const { return options_.spring_damping; }
   /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
   bool conservesAngularMomentum() const;
-  double largestStiffness() const;
+  double largestStiffness() const;  ///< of all kinds [J/rad^2, J/sr^2]; 0 without springs
   int threads() const { return options_.threads; }
 
+  /// Id of a particle, by its index.
   std::uint32_t particleId(std::size_t index) const { return particle_ids_[index]; }
   /// Id of a spring of a kind, by its index in `springs`.
   template <class Spring>
@@ -67,21 +70,24 @@ class System {
 
   /// Arrays of an evaluation at some positions, reused to save memory.
   struct Workspace {
-    std::vector<Vector3> end_torques;    ///< of each end of each spring
+    std::vector<Vector3> end_torques;    ///< of each end of each spring [N m]
     std::vector<Vector3> end_gradients;  ///< of each end of each spring, if any spring is damped
     Points torques;                      ///< of each particle [N m]
   };
 
-  /// Torques of the springs on each particle, damping apart, into `workspace`.
+  /// Puts the torques of the springs on each particle, damping apart, into `workspace`.
+  /// `positions`: one unit vector a particle.
   void evaluate(const Points& positions, Workspace& workspace) const;
 
+  /// Returns the energies of the springs; `positions`: one unit vector a particle.
   PotentialEnergies potential(const Points& positions) const;
+  /// Returns the kinetic energy [J] of angular velocities [rad/s], one a particle.
   double kinetic(const Points& angular_velocities) const;
 
   /// Sum of m omega [kg m^2 rad/s].
   Vector3 angularMomentum(const Points& angular_velocities) const;
 
-  /// Positions of the particles of a spring.
+  /// Returns the positions of the particles of a spring, whose `particles` are indices.
   template <class Spring>
   static std::array<Vector3, Spring::kParticles> points(const Spring& spring,
                                                         const Points& positions) {

@@ -21,8 +21,10 @@ struct AngleSpring {
   double damping = 0;     ///< [N m s/rad]
   bool at_rest = false;   ///< true: rest_angle is ignored and the present angle is taken
 
+  /// Returns the rest value of the condition's quantity [rad].
   double restValue() const { return rest_angle; }
 
+  /// Calls `visit(name, value, range)` for each number that has a range of allowed values.
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {
     visit("rest_angle", spring.rest_angle, Range{0, kPi, "0 to pi [rad]"});
@@ -32,17 +34,19 @@ struct AngleSpring {
   }
 };
 
-/// Takes the present angle as the rest angle.
+/// Takes the present angle [rad] between two unit vectors as the rest angle.
 void rest(AngleSpring& spring, const std::array<Vector3, 2>& points);
 
 /// The angle is defined everywhere.
 constexpr bool nearlyUndefined(const AngleSpring&, const std::array<Vector3, 2>&) { return false; }
 
-/// At coinciding or antipodal points the gradient is along the fixed axis of `arc`.
+/// Returns C [rad] and its gradients at two unit vectors. Where they coincide or are antipodal the
+/// gradient is along the fixed axis of `arc`.
 Condition<2> condition(const AngleSpring& spring, const std::array<Vector3, 2>& points);
 
-/// Within 1e-12 of coinciding or antipodal, as if at that distance, so that the product of value
-/// and Hessian keeps its limit for a rest angle of 0 or pi.
+/// Returns C [rad] and its derivatives in the tangent frames at two unit vectors. Points within
+/// 1e-12 of coinciding or antipodal are treated as if at that distance, so that the product of
+/// value and Hessian keeps its limit for a rest angle of 0 or pi.
 TangentCondition<2> tangentCondition(const AngleSpring& spring,
                                      const std::array<Vector3, 2>& points,
                                      const std::array<TangentFrame, 2>& frames,

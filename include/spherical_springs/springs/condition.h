@@ -35,9 +35,9 @@ constexpr double leastCurvature(Curvature curvature) {
 /// back onto the sphere.
 template <std::size_t N>
 struct TangentCondition {
-  double value;
-  std::array<Vector2, N> gradient;
-  std::array<std::array<Matrix2, N>, N> hessian;
+  double value;                                   ///< C [rad or sr]
+  std::array<Vector2, N> gradient;                ///< by the coordinates of each particle
+  std::array<std::array<Matrix2, N>, N> hessian;  ///< by those of each pair
 };
 
 }  // namespace spherical_springs::core

@@ -1,5 +1,4 @@
-// The list of kinds of springs. A new kind is a header beside the others and a name in this list
-// (and, for people who call the node, a message and its conversion).
+// The list of kinds of springs. doc/architecture.md names the files that a new kind touches.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +15,7 @@ namespace spherical_springs::core {
 template <template <class> class Holder>
 class PerKind {
  public:
+  /// Returns the holder of a kind.
   template <class Spring>
   Holder<Spring>& get() {
     return std::get<Holder<Spring>>(holders_);
@@ -29,6 +29,7 @@ class PerKind {
   std::tuple<Holder<AngleSpring>, Holder<SolidAngleSpring>, Holder<OrientedAngleSpring>> holders_;
 };
 
+/// Tells a generic lambda the kind of spring that it is called for, which is its `type`.
 template <class Spring>
 struct Kind {
   using type = Spring;
@@ -42,6 +43,7 @@ void forEachKind(Visitor&& visit) {
   visit(Kind<OrientedAngleSpring>());
 }
 
+/// Calls `visit(Kind<Spring>())` for each kind of spring, in the opposite order.
 template <class Visitor>
 void forEachKindBackward(Visitor&& visit) {
   visit(Kind<OrientedAngleSpring>());
@@ -49,6 +51,7 @@ void forEachKindBackward(Visitor&& visit) {
   visit(Kind<AngleSpring>());
 }
 
+/// Springs of one kind.
 template <class Spring>
 struct SpringList : std::vector<Spring> {
   using std::vector<Spring>::vector;

@@ -24,8 +24,10 @@ struct OrientedAngleSpring {
   double width = 0;       ///< of the change of sign, in units of the triple product; 0: the default
   bool at_rest = false;   ///< true: rest_angle is ignored and the present signed angle is taken
 
+  /// Returns the rest value of the condition's quantity [rad].
   double restValue() const { return rest_angle; }
 
+  /// Calls `visit(name, value, range)` for each number that has a range of allowed values.
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {
     visit("rest_angle", spring.rest_angle, Range{-kPi, kPi, "-pi to pi [rad]"});
@@ -49,8 +51,11 @@ constexpr bool nearlyUndefined(const OrientedAngleSpring&, const std::array<Vect
   return false;
 }
 
+/// Returns C [rad] and its gradients at three unit vectors; where the first two coincide or are
+/// antipodal, as for an angle spring.
 Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
 
+/// Returns C [rad] and its derivatives in the tangent frames at three unit vectors.
 TangentCondition<3> tangentCondition(const OrientedAngleSpring& spring,
                                      const std::array<Vector3, 3>& points,
                                      const std::array<TangentFrame, 3>& frames,

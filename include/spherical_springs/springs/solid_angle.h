@@ -24,8 +24,10 @@ struct SolidAngleSpring {
   double damping = 0;           ///< as for the other springs, with C in [sr]
   bool at_rest = false;         ///< true: rest_solid_angle is ignored and the present one is taken
 
+  /// Returns the rest value of the condition's quantity [sr].
   double restValue() const { return rest_solid_angle; }
 
+  /// Calls `visit(name, value, range)` for each number that has a range of allowed values.
   template <class Spring, class Visitor>
   static void visitFields(Spring& spring, Visitor&& visit) {
     visit("rest_solid_angle", spring.rest_solid_angle,
@@ -36,16 +38,18 @@ struct SolidAngleSpring {
   }
 };
 
-/// Takes the present solid angle as the one at rest.
+/// Takes the present solid angle [sr] of three unit vectors as the one at rest.
 void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
 /// Whether two vertices are within 1e-6 of antipodal, where torques grow without limit.
 bool nearlyUndefined(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
-/// With an antipodal pair of vertices the area is undefined: it counts as 0 there, and the gradient
+/// Returns C [sr] and its gradients at three unit vectors, by the formula of Oosterom and Strackee
+/// 1983. With an antipodal pair of vertices the area is undefined: it counts as 0, and the gradient
 /// is zero.
 Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
+/// Returns C [sr] and its derivatives in the tangent frames at three unit vectors.
 TangentCondition<3> tangentCondition(const SolidAngleSpring& spring,
                                      const std::array<Vector3, 3>& points,
                                      const std::array<TangentFrame, 3>& frames,
