@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "node/answer.h"
+#include "node/faults.h"
 #include "node/request_stream.h"
-#include "node/surviving.h"
 
 namespace spherical_springs {
 

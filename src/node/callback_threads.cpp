@@ -4,7 +4,7 @@
 #include <csignal>
 #include <utility>
 
-#include "node/surviving.h"
+#include "node/faults.h"
 
 namespace spherical_springs {
 namespace {
@@ -16,7 +16,7 @@ class SurvivingCallback : public ros::CallbackInterface {
 
   CallResult call() override {
     CallResult result = Invalid;
-    survive("a callback failed", [&] { result = callback_->call(); });
+    runLoggingFaults("a callback failed", [&] { result = callback_->call(); });
     return result;
   }
 
@@ -55,7 +55,7 @@ void CallbackThreads::callBack() {
   const ros::WallDuration kPatience(1);
   blockSignals();
   while (!stopped_) {
-    survive("callbacks could not be called", [&] { queue_.callOne(kPatience); });
+    runLoggingFaults("callbacks could not be called", [&] { queue_.callOne(kPatience); });
   }
 }
 

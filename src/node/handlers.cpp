@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "node/conversion.h"
-#include "node/surviving.h"
+#include "node/faults.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {
@@ -56,7 +56,8 @@ class UndoableSteps {
   UndoableSteps& operator=(const UndoableSteps&) = delete;
 
   ~UndoableSteps() {
-    if (undoable_) survive("steps of a call that failed could not be undone", [this] { undo(); });
+    if (undoable_)
+      runLoggingFaults("steps of a call that failed could not be undone", [this] { undo(); });
   }
 
   std::uint64_t step(std::uint64_t steps) {

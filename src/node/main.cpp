@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "node/callback_threads.h"
+#include "node/faults.h"
 #include "node/handlers.h"
 #include "node/marker_publisher.h"
 #include "node/news.h"
@@ -15,7 +16,6 @@
 #include "node/scene_directory.h"
 #include "node/services.h"
 #include "node/stepper.h"
-#include "node/surviving.h"
 #include "simulation/runner.h"
 #include "spherical_springs/range.h"
 #include "spherical_springs/scene_file.h"

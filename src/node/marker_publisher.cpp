@@ -5,8 +5,8 @@
 
 #include <utility>
 
+#include "node/faults.h"
 #include "node/markers.h"
-#include "node/surviving.h"
 
 namespace spherical_springs {
 
@@ -30,7 +30,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle node, core::Runner& runner,
       "markers", kQueue,
       [this](const ros::SingleSubscriberPublisher& listener) { greet(listener); });
   timer_ = node.createTimer(ros::Duration(1 / parameters_.publish_rate),
-                            surviving("~markers are sent later", [this] { publishChanges(); }));
+                            loggingFaults("~markers are sent later", [this] { publishChanges(); }));
 }
 
 MarkerPublisher::Markers MarkerPublisher::markersOf(const core::Runner::Snapshot& moment) const {
@@ -44,7 +44,7 @@ MarkerPublisher::Markers MarkerPublisher::markersOf(const core::Runner::Snapshot
 void MarkerPublisher::greet(const ros::SingleSubscriberPublisher& listener) {
   const std::lock_guard<std::mutex> lock(mutex_);
   greeted_ = true;
-  if (survive("a new listener gets ~markers later", [&] { sendAll(listener); })) return;
+  if (runLoggingFaults("a new listener gets ~markers later", [&] { sendAll(listener); })) return;
   for (std::size_t i = 0; i < sent_.size(); ++i) forget(i);
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "node/conversion.h"
+#include "node/faults.h"
 #include "node/poses.h"
-#include "node/surviving.h"
 #include "spherical_springs/measures.h"
 
 namespace spherical_springs {
@@ -26,7 +26,7 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
       news_(news),
       diagnostics_(reporting),
       stepped_(parameters.time_step),
-      lag_(parameters.real_time_factor, parameters.time_step) {
+      real_time_monitor_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { news_.statusChanged(); };
   poses_ = sampling.advertise<geometry_msgs::PoseArray>("poses", 1);
@@ -35,10 +35,10 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
                                         ros::VoidConstPtr(), true);
   sample_timer_ = sampling.createTimer(
       ros::Duration(1 / parameters_.publish_rate),
-      surviving("a sample of ~poses and ~energies is left out", [this] { publishSample(); }));
-  status_timer_ =
-      reporting.createWallTimer(ros::WallDuration(kStatusCheck),
-                                surviving("~status comes later", [this] { publishStatusIfDue(); }));
+      loggingFaults("a sample of ~poses and ~energies is left out", [this] { publishSample(); }));
+  status_timer_ = reporting.createWallTimer(
+      ros::WallDuration(kStatusCheck),
+      loggingFaults("~status comes later", [this] { publishStatusIfDue(); }));
 }
 
 void Publisher::publishSample() {
@@ -122,8 +122,8 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.max_torque = measures.max_torque;
   report.warning = measures.warning;
   report.blown_up = measures.blown_up;
-  report.behind =
-      lag_.behind(message.state == "running", ros::Time::now().toSec(), stepped_.total());
+  report.behind = real_time_monitor_.behind(message.state == "running", ros::Time::now().toSec(),
+                                            stepped_.total());
   report.news = news_.facts();
   message.message = measures.warning.empty() ? report.news.message : measures.warning;
   return report;

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "node/diagnostics.h"
-#include "node/lag.h"
 #include "node/news.h"
 #include "node/parameters.h"
+#include "node/real_time_monitor.h"
 #include "node/rest.h"
 #include "node/stepped_time.h"
 #include "simulation/runner.h"
@@ -50,7 +50,7 @@ class Publisher {
   Clock::time_point last_status_ = Clock::now();
   Rest rest_;
   SteppedTime stepped_;
-  Lag lag_;
+  RealTimeMonitor real_time_monitor_;
   core::Measures measures_;
 
   // Last, so that their callbacks end before what these use.

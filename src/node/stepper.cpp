@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "node/elapsed.h"
-#include "node/surviving.h"
+#include "node/faults.h"
 
 namespace spherical_springs {
 namespace {
@@ -16,11 +16,11 @@ constexpr double kPeriod = 0.01;  // [s]
 
 Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters)
     : runner_(runner),
-      pacer_(parameters.time_step, parameters.real_time_factor),
+      step_clock_(parameters.time_step, parameters.real_time_factor),
       last_step_(ros::Time::now()),
       last_wall_step_(WallClock::now()),
       timer_(node.createTimer(ros::Duration(kPeriod),
-                              surviving("a tick is left out", [this] { tick(); }))),
+                              loggingFaults("a tick is left out", [this] { tick(); }))),
       thread_([this] { stepAtEachTick(); }) {}
 
 Stepper::~Stepper() {
@@ -47,7 +47,7 @@ void Stepper::stepAtEachTick() {
     if (ends_) return;
     ticked_ = false;
     lock.unlock();
-    survive("steps are left out", [this] { step(); });
+    runLoggingFaults("steps are left out", [this] { step(); });
     lock.lock();
   }
 }
@@ -59,7 +59,7 @@ void Stepper::step() {
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
   const double elapsed = last_step_.isZero() ? 0 : secondsBetween(last_step_, now);
-  const std::uint64_t due = pacer_.due(elapsed);
+  const std::uint64_t due = step_clock_.due(elapsed);
   const double wall_elapsed = std::chrono::duration<double>(wall_now - last_wall_step_).count();
   last_step_ = now;
   last_wall_step_ = wall_now;

@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "node/pacer.h"
 #include "node/parameters.h"
+#include "node/step_clock.h"
 #include "simulation/runner.h"
 
 namespace spherical_springs {
@@ -31,7 +31,7 @@ class Stepper {
   core::Runner& runner_;  // safe for many threads by itself
 
   // Used by the thread alone.
-  Pacer pacer_;
+  StepClock step_clock_;
   ros::Time last_step_;
   std::chrono::steady_clock::time_point last_wall_step_;
 

@@ -158,7 +158,7 @@ double DampedKick::kickBySeries(double duration, int terms, const Velocities& ve
 double DampedKick::addTerm(std::size_t patch, const SeriesTerm& term,
                            const Velocities& velocities) {
   const Patch& here = layout_.patches()[patch];
-  layout_.welcomeGuests(here, last_);
+  layout_.updateGhosts(here, last_);
   const auto scratch = scratches_.lease(here);
   const double* const last = last_[here.first_row].values;
   double* const rates = scratch->sums[0].values;

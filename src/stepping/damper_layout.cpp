@@ -55,12 +55,12 @@ class DamperLayout::Builder {
     });
   }
 
-  /// Makes `row_of_` that of rows at home to rows in a patch.
+  /// Makes `row_of_` the map from owned rows to rows in a patch.
   void enter(const Patch& patch) {
     const auto own = row_of_.begin() + patch.first_row;
     std::iota(own, own + patch.particle_count, 0);
     for (std::uint32_t row = patch.slotCount(); row < patch.row_count; ++row) {
-      row_of_[layout_.guests()[patch.first_guest + row - patch.slotCount()]] = row;
+      row_of_[layout_.ghosts()[patch.first_ghost + row - patch.slotCount()]] = row;
     }
   }
 
@@ -104,7 +104,7 @@ class DamperLayout::Builder {
   Cut cut_;
   std::vector<std::uint32_t> places_;  // of particles
   std::vector<std::uint32_t> home_;    // rows of places
-  std::vector<std::uint32_t> row_of_;  // in the present patch, of rows at home
+  std::vector<std::uint32_t> row_of_;  // in the present patch, by owned row
   std::vector<PerKind<DamperShare>>& shares_ = dampers_.shares_;
 };
 

@@ -37,7 +37,7 @@ struct DamperShare {
 /// Springs between patches, each once.
 struct SharedDamper {
   std::uint32_t group, lane;
-  std::array<std::uint32_t, 3> rows;  ///< of its ends, at home
+  std::array<std::uint32_t, 3> rows;  ///< owned, of its ends
 };
 template <class Spring>
 struct SharedDampers : std::vector<SharedDamper> {};

@@ -22,7 +22,7 @@ Evaluation::Evaluation(const Plan& plan, const Points& positions, const StepKern
           positions.col(layout_.order()[patch.first_place + i]);
     }
   });
-  forEachPatch([&](std::size_t, const Patch& patch) { layout_.welcomeGuests(patch, positions_); });
+  forEachPatch([&](std::size_t, const Patch& patch) { layout_.updateGhosts(patch, positions_); });
 }
 
 int Evaluation::threads() const { return layout_.patches().size() > 1 ? system_.threads() : 1; }

@@ -44,7 +44,7 @@ class Layout::Builder {
                       fill<4>(lists, shares, p)};
       endPatch(patch);
     }
-    namesOfGuests();
+    nameGhosts();
   }
 
  private:
@@ -54,7 +54,7 @@ class Layout::Builder {
     patch.particle_count = static_cast<std::uint32_t>(cut_.begin(b + 1)) - patch.first_place;
     patch.first_slot = layout_.slot_count_;
     patch.first_row = layout_.row_count_;
-    patch.first_guest = static_cast<std::uint32_t>(layout_.guests_.size());
+    patch.first_ghost = static_cast<std::uint32_t>(layout_.ghosts_.size());
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) row_of_[patch.first_place + i] = i;
     row_count_ = patch.slotCount();
     return patch;
@@ -67,7 +67,7 @@ class Layout::Builder {
     layout_.largest_patch_ = std::max(layout_.largest_patch_, patch.row_count);
     const auto none = [&](std::uint32_t place) { row_of_[place] = kNone; };
     for (std::uint32_t i = 0; i < patch.particle_count; ++i) none(patch.first_place + i);
-    std::for_each(layout_.guests_.begin() + patch.first_guest, layout_.guests_.end(), none);
+    std::for_each(layout_.ghosts_.begin() + patch.first_ghost, layout_.ghosts_.end(), none);
     layout_.patches_.push_back(patch);
   }
 
@@ -75,7 +75,7 @@ class Layout::Builder {
   std::uint32_t rowOf(std::uint32_t place) {
     if (row_of_[place] == kNone) {
       row_of_[place] = row_count_++;
-      layout_.guests_.push_back(place);
+      layout_.ghosts_.push_back(place);
     }
     return row_of_[place];
   }
@@ -144,15 +144,15 @@ class Layout::Builder {
         [](Group& group, std::uint32_t lane) { slacken(group, lane); });
   }
 
-  /// From places in the order to rows at home.
-  void namesOfGuests() {
+  /// Turns ghosts from places in the order into owned rows.
+  void nameGhosts() {
     for (const Patch& patch : layout_.patches_) {
       for (std::uint32_t i = 0; i < patch.particle_count; ++i) {
         row_of_[patch.first_place + i] = patch.first_row + i;
       }
     }
-    for (std::uint32_t& guest : layout_.guests_) guest = row_of_[guest];
-    layout_.guests_.shrink_to_fit();
+    for (std::uint32_t& ghost : layout_.ghosts_) ghost = row_of_[ghost];
+    layout_.ghosts_.shrink_to_fit();
   }
 
   Layout& layout_;
@@ -169,18 +169,18 @@ Layout::Layout(const System& system, const Points& positions) : order_(curveOrde
   Builder(*this, system, std::move(places)).build();
 }
 
-void Layout::welcomeGuests(const Patch& patch, std::vector<Row>& rows) const {
-  const std::uint32_t* const home = guests_.data() + patch.first_guest;
+void Layout::updateGhosts(const Patch& patch, std::vector<Row>& rows) const {
+  const std::uint32_t* const owned = ghosts_.data() + patch.first_ghost;
   const std::uint32_t first = patch.first_row + patch.slotCount();
   const std::uint32_t count = patch.row_count - patch.slotCount();
-  for (std::uint32_t i = 0; i < count; ++i) rows[first + i] = rows[home[i]];
+  for (std::uint32_t i = 0; i < count; ++i) rows[first + i] = rows[owned[i]];
 }
 
 std::size_t Layout::bytes() const {
   const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
   const std::size_t groups =
       std::apply([&](const auto&... lists) { return (of(lists) + ...); }, groups_);
-  return groups + of(order_) + of(guests_) + of(patches_);
+  return groups + of(order_) + of(ghosts_) + of(patches_);
 }
 
 }  // namespace spherical_springs::core

@@ -22,13 +22,14 @@ struct GroupList : std::vector<Group> {
 using GroupLists = std::tuple<GroupList<Arcs>, GroupList<Triangles<0>>, GroupList<Triangles<1>>,
                               GroupList<Triangles<2>>, GroupList<OrientedArcs>>;
 
-/// A few hundred particles that are stepped together, and the springs that pull at them: those that
-/// join them with others are in each patch that has one of the ends.
+/// About a thousand particles that are stepped together, and the springs that pull at them. A
+/// spring between patches is in each patch that owns one of its ends; particles of other patches
+/// that its springs need are ghosts, copies of the rows that their own patches step.
 struct Patch {
   std::uint32_t first_place, particle_count;  ///< in the order
   std::uint32_t first_slot;                   ///< of its particles, in arrays over particles
-  std::uint32_t first_row, row_count;         ///< of its particles, then those of others
-  std::uint32_t first_guest;                  ///< of others, in the list of guests
+  std::uint32_t first_row, row_count;         ///< of its own particles, then of ghosts
+  std::uint32_t first_ghost;                  ///< in the list of ghosts
 
   std::array<GroupRange, 5> groups;  ///< of each sort
 
@@ -47,11 +48,11 @@ class Layout {
   std::uint32_t largestPatch() const { return largest_patch_; }  ///< [rows]
 
   /// For each ghost, the row of the owned copy.
-  const std::vector<std::uint32_t>& guests() const { return guests_; }
+  const std::vector<std::uint32_t>& ghosts() const { return ghosts_; }
   const GroupLists& groups() const { return groups_; }
 
-  /// Copies what is at home of the particles of other patches to the rows that they have in this.
-  void welcomeGuests(const Patch& patch, std::vector<Row>& rows) const;
+  /// Copies the owned rows of a patch's ghosts to the rows that these have in the patch.
+  void updateGhosts(const Patch& patch, std::vector<Row>& rows) const;
 
   std::size_t bytes() const;
 
@@ -61,7 +62,7 @@ class Layout {
   std::vector<std::uint32_t> order_;
   std::vector<Patch> patches_;
   std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0;
-  std::vector<std::uint32_t> guests_;
+  std::vector<std::uint32_t> ghosts_;
   GroupLists groups_;
 };
 

@@ -117,7 +117,7 @@ double Motion::kickAndDrift(double kick, const Drifts& drifts) {
 
 const Row* Motion::forcesOn(const Patch& patch, Scratch& scratch) {
   fetch(patch);
-  layout_.welcomeGuests(patch, positions_);
+  layout_.updateGhosts(patch, positions_);
   return forces_.on(patch, &positions_[patch.first_row], scratch);
 }
 
@@ -156,7 +156,7 @@ void Motion::driftPatch(Particles particles, const Drifts& drifts) const {
 
 double Motion::fastestRate() {
   forEachPatch([&](std::size_t b, const Patch& patch) {
-    layout_.welcomeGuests(patch, positions_);
+    layout_.updateGhosts(patch, positions_);
     damped_kick_->takeGradients(b, &positions_[patch.first_row]);
   });
   return damped_kick_->fastestRate();

@@ -11,10 +11,10 @@
 #include "failing_malloc.h"
 #include "node/answering_service.h"
 #include "node/conversion.h"
+#include "node/faults.h"
 #include "node/handlers.h"
 #include "node/markers.h"
 #include "node/poses.h"
-#include "node/surviving.h"
 #include "support/scenes.h"
 
 namespace spherical_springs {
@@ -323,7 +323,7 @@ void expectBadAllocUntilItWorks(const Make& make) {
   long failures = 0;
   for (bool made = false; !made; ++failures) {
     const ShortMemory memory(failures, ShortMemory::kAll);
-    made = survive("a sample is left out", make);
+    made = runLoggingFaults("a sample is left out", make);
   }
   EXPECT_GT(failures, 1) << "nothing failed";
 }

@@ -5,21 +5,22 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "node/surviving.h"
+#include "node/faults.h"
 
 namespace spherical_springs {
 namespace {
 
 TEST(Surviving, TellsWhetherTheWorkCameToItsEnd) {
   bool done = false;
-  EXPECT_TRUE(survive("this is not said", [&] { done = true; }));
+  EXPECT_TRUE(runLoggingFaults("this is not said", [&] { done = true; }));
   EXPECT_TRUE(done);
 }
 
 TEST(Surviving, OutlivesWhateverIsThrown) {
-  EXPECT_FALSE(survive("a test's work failed", [] { throw std::runtime_error("as it should"); }));
-  EXPECT_FALSE(survive("a test's work failed", [] { throw std::bad_alloc(); }));
-  EXPECT_FALSE(survive("a test's work failed", [] { throw 42; }));
+  EXPECT_FALSE(
+      runLoggingFaults("a test's work failed", [] { throw std::runtime_error("as it should"); }));
+  EXPECT_FALSE(runLoggingFaults("a test's work failed", [] { throw std::bad_alloc(); }));
+  EXPECT_FALSE(runLoggingFaults("a test's work failed", [] { throw 42; }));
 }
 
 TEST(Surviving, NamesALackOfMemory) {

@@ -2,13 +2,15 @@
 
 namespace spherical_springs {
 
-/// Whether simulated time falls behind the clock, judged over a second or more of running.
-class Lag {
+/// Tells whether simulated time falls behind the clock, judged over a second or more of running.
+class RealTimeMonitor {
  public:
-  Lag(double real_time_factor, double time_step)
+  RealTimeMonitor(double real_time_factor, double time_step)
       : real_time_factor_(real_time_factor), time_step_(time_step) {}
 
-  /// To be told now and then, and when running begins or ends. `clock`: [s]; `simulated`: [s].
+  /// Takes the clock [s] and the simulated time [s]; to be called now and then, and when running
+  /// begins or ends.
+  /// @return whether simulated time falls behind.
   bool behind(bool running, double clock, double simulated) {
     constexpr double kLongEnough = 0.95;  // [s]
     constexpr double kEnough = 0.9;       // of what is due

@@ -1,4 +1,4 @@
-// Faults in what ROS calls back: ROS would end the node, and would never call a timer again.
+// Faults in callbacks are logged: uncaught ones would end the node, and stop a timer for good.
 #pragma once
 
 #include <ros/console.h>
@@ -52,11 +52,11 @@ inline void logFault(const char* consequence, const char* reason) noexcept {
   }
 }
 
-/// Does `work` and outlives whatever it throws. The log tells of that, every ten seconds at most
-/// from one place in the code: "`consequence`: the reason".
+/// Does `work`; if it throws, logs "`consequence`: the reason", every ten seconds at most from one
+/// place in the code, and goes on.
 /// @return whether `work` came to its end.
 template <class Work>
-bool survive(const char* consequence, const Work& work) noexcept {
+bool runLoggingFaults(const char* consequence, const Work& work) noexcept {
   static Throttle throttle(std::chrono::seconds(10));  // one for each type of `work`
   try {
     work();
@@ -69,10 +69,11 @@ bool survive(const char* consequence, const Work& work) noexcept {
   return false;
 }
 
-/// A callback of a timer that survives `work`, and tries again at the next tick.
+/// Returns a callback of a timer that does `work`, logs what it throws, and tries again at the next
+/// tick.
 template <class Work>
-auto surviving(const char* consequence, const Work& work) {
-  return [consequence, work](const auto&) { survive(consequence, work); };
+auto loggingFaults(const char* consequence, const Work& work) {
+  return [consequence, work](const auto&) { runLoggingFaults(consequence, work); };
 }
 
 }  // namespace spherical_springs

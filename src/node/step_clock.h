@@ -6,10 +6,10 @@
 
 namespace spherical_springs {
 
-/// How many steps of a fixed length are due as time goes by.
-class Pacer {
+/// Counts the steps of a fixed length that are due as time goes by.
+class StepClock {
  public:
-  Pacer(double time_step, double real_time_factor)
+  StepClock(double time_step, double real_time_factor)
       : steps_per_second_(real_time_factor / time_step) {}
 
   /// Steps due after another `elapsed` [s] of the clock. A clock that goes back counts as standing
