@@ -58,7 +58,7 @@ class Integrator {
 /// Makes an integrator of a method, with all the memory that its steps need. `time_step`: [s],
 /// above 0.
 /// @throw std::bad_alloc.
-std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const Plan> plan,
+std::unique_ptr<Integrator> makeIntegrator(const std::shared_ptr<const Plan>& plan,
                                            IntegrationMethod method, double time_step);
 
 }  // namespace spherical_springs::core

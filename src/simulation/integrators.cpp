@@ -3,7 +3,6 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "relaxation/implicit_euler.h"
 #include "spherical_springs/integrator.h"
@@ -13,7 +12,7 @@
 namespace spherical_springs::core {
 namespace {
 
-using Make = std::unique_ptr<Integrator> (*)(std::shared_ptr<const Plan>, double time_step);
+using Make = std::unique_ptr<Integrator> (*)(const std::shared_ptr<const Plan>&, double time_step);
 
 struct Entry {
   IntegrationMethod method;
@@ -27,15 +26,15 @@ struct Entry {
 template <IntegrationMethod method>
 Entry splitting(const char* name) {
   const SplittingScheme& scheme = splittingScheme(method);
-  const auto make = [](std::shared_ptr<const Plan> plan, double time_step) {
+  const auto make = [](const std::shared_ptr<const Plan>& plan, double time_step) {
     return std::unique_ptr<Integrator>(
-        std::make_unique<BlockedSplitting>(std::move(plan), splittingScheme(method), time_step));
+        std::make_unique<BlockedSplitting>(plan, splittingScheme(method), time_step));
   };
   return {method, name, scheme.order, scheme.stability_limit, false, make};
 }
 
 Entry implicitEuler() {
-  const auto make = [](std::shared_ptr<const Plan> plan, double time_step) {
+  const auto make = [](const std::shared_ptr<const Plan>& plan, double time_step) {
     return std::unique_ptr<Integrator>(std::make_unique<ImplicitEuler>(plan->system(), time_step));
   };
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -71,9 +70,9 @@ double stabilityLimit(IntegrationMethod method) { return entryOf(method).stabili
 
 bool takesEnergyOut(IntegrationMethod method) { return entryOf(method).takes_energy_out; }
 
-std::unique_ptr<Integrator> makeIntegrator(std::shared_ptr<const Plan> plan,
+std::unique_ptr<Integrator> makeIntegrator(const std::shared_ptr<const Plan>& plan,
                                            IntegrationMethod method, double time_step) {
-  return entryOf(method).make(std::move(plan), time_step);
+  return entryOf(method).make(plan, time_step);
 }
 
 }  // namespace spherical_springs::core
