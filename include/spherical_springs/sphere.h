@@ -54,7 +54,10 @@ Arc arc(const Vector3& a, const Vector3& b);
 struct Triangle {
   double triple_product;  ///< a . (b x c); positive for vertices counter-clockwise from outside
   double denominator;     ///< 1 + a.b + b.c + c.a
-  double squared_norm;    ///< triple_product^2 + denominator^2; 0 only for an antipodal pair
+  /// triple_product^2 + denominator^2; 0 for a pair of vertices that is antipodal to within 1e-30,
+  /// far below what rounding leaves of most positions, so that gradients of the area stay below
+  /// 4e30.
+  double squared_norm;
 };
 
 Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c);

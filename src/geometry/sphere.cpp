@@ -96,6 +96,7 @@ double tripleProduct(const Vector3& a, const Vector3& b, const Vector3& c) {
 }
 
 Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c) {
+  constexpr double kUndefined = 1e-60;
   const LongestEdgeFirst t(a, b, c);
   const Vector3 sum = sumOfUnits(t.first, t.second);
   const double squared_sum = sum.squaredNorm();
@@ -104,6 +105,7 @@ Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c) {
   result.denominator = 0.5 * squared_sum + sum.dot(t.third);
   result.squared_norm =
       0.25 * squared_sum * (t.second + t.third).squaredNorm() * (t.third + t.first).squaredNorm();
+  if (result.squared_norm < kUndefined) result.squared_norm = 0;
   return result;
 }
 

@@ -235,7 +235,7 @@ RelaxationResult unrelaxed(const System& system, const Points& positions) {
   system.evaluate(positions, workspace);
   for (Eigen::Index i = 0; i < positions.cols(); ++i) {
     if (system.pinned(i)) continue;
-    result.max_torque = std::max(result.max_torque, workspace.torques.col(i).stableNorm());
+    result.max_torque = std::max(result.max_torque, workspace.torques.col(i).norm());
   }
   return result;
 }

@@ -57,9 +57,7 @@ double normError(const State& state) {
 }
 
 double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions) {
-  const double limit = stabilityLimit(method);
-  // A frequency may be infinite too.
-  return std::isinf(limit) ? limit : limit / highestFrequency(system, positions);
+  return stabilityLimit(method) / highestFrequency(system, positions);
 }
 
 double localError(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,

@@ -1,7 +1,6 @@
 #include "stepping/evaluation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -136,8 +135,7 @@ void Evaluation::forEachTorque(const Patch& patch, const Visit& visit) const {
     if (system_.pinned(particle)) continue;
     const Eigen::Map<const Vector3> position(positions[i].values), force(forces[i].values);
     const Vector3 torque = position.cross(force);
-    const double size = torque.norm();  // infinite where its square overflows
-    visit(particle, std::isfinite(size) ? size : torque.stableNorm());
+    visit(particle, torque.norm());
   }
 }
 

@@ -41,21 +41,45 @@ TEST(StableTimeStep, Holds) {
   }
 }
 
-// The stiffness across a triangle overflows where an edge is within 1e-143 of pi.
-TEST(StableTimeStep, IsANumberWhereCurvatureIsInfinite) {
+/// A triangle of the largest stiffness on the lightest particles with an edge of pi - `away`.
+Scene nearlyAntipodal(double away, double damping = 0) {
   SpringLists springs;
-  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, 1)};
+  springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, -1)};
   springs.get<SolidAngleSpring>()[0].stiffness = 1e30;
-  const Scene scene =
-      testing::sceneOf({testing::particleAt({0.6, 0, 0.8}), testing::particleAt({1, 0, 0}),
-                        testing::particleAt({-1, 1e-143, 0})},
-                       springs);
-  const System system(scene, System::Options());
-  const Points positions = testing::stateOf(scene).positions;
-  ASSERT_TRUE(std::isinf(highestFrequency(system, positions)));
-  EXPECT_EQ(stableTimeStep(system, IntegrationMethod::verlet, positions), 0);
-  const double step = stableTimeStep(system, IntegrationMethod::implicit_euler, positions);
-  EXPECT_TRUE(std::isinf(step)) << step;
+  springs.get<SolidAngleSpring>()[0].damping = damping;
+  std::vector<Particle> particles = {testing::particleAt({0.6, 0, 0.8}),
+                                     testing::particleAt({-1, away, 0}),
+                                     testing::particleAt({1, 0, 0})};
+  for (Particle& particle : particles) particle.mass = 1e-30;
+  return testing::sceneOf(particles, springs);
+}
+
+TEST(NearlyAntipodal, HasAStableTimeStepAboveZero) {
+  for (const double away : {1e-143, 1e-31, 1e-29, 1e-16}) {
+    const Scene scene = nearlyAntipodal(away);
+    const System system(scene, System::Options());
+    const Points positions = testing::stateOf(scene).positions;
+    EXPECT_TRUE(std::isfinite(highestFrequency(system, positions))) << away;
+    EXPECT_GT(stableTimeStep(system, IntegrationMethod::verlet, positions), 0) << away;
+    const double step = stableTimeStep(system, IntegrationMethod::implicit_euler, positions);
+    EXPECT_TRUE(std::isinf(step)) << step;
+  }
+}
+
+TEST(NearlyAntipodal, StepsToFiniteStates) {
+  for (const char* method : {"euler", "verlet", "fourth_order", "implicit_euler"}) {
+    for (const double away : {1e-143, 1e-31, 1e-29, 1e-16}) {
+      for (const double damping : {0., 5e-324, 1e-30, 1e-3, 1e30}) {
+        for (const double time_step : {1e-12, 0.1, 1e6}) {
+          const Trajectory end(nearlyAntipodal(away, damping), method, time_step, 4);
+          ASSERT_TRUE(end.state.positions.allFinite())
+              << method << " " << away << " " << damping << " " << time_step;
+          ASSERT_TRUE(end.state.angular_velocities.allFinite())
+              << method << " " << away << " " << damping << " " << time_step;
+        }
+      }
+    }
+  }
 }
 
 /// An icosphere with springs of arcs and triangles, a little out of shape.
