@@ -33,7 +33,8 @@ Newton::Newton(const System& system, const Points& positions, Eigen::VectorXd in
 void Newton::aimAt(const TorqueLimit* limit) {
   limit_ = limit;
   excess_ = kInfinity;
-  if (limit_ && scale_.size() > 0) measureExcess();
+  const bool placed = scale_.size() > 0 || energy_.freeCount() == 0;
+  if (limit_ && placed) measureExcess();
 }
 
 void Newton::place(const Points& positions) {

@@ -91,6 +91,27 @@ TEST_P(Equilibrium, RelaxedAgainChangesNothing) {
   }
 }
 
+/// Scenes without a particle that could move.
+std::vector<Scene> scenesAtRest() {
+  const Particle one = testing::particleAt({1, 0, 0}), other = testing::particleAt({0, 1, 0});
+  const Scene pair = testing::sceneOf({one, other}, testing::arcs({testing::angleSpring(0, 1, 1)}));
+  return {Scene(), testing::sceneOf({one, other}, {}), testing::pinnedScene(pair, {0, 1})};
+}
+
+TEST_P(Equilibrium, RelaxedAgainIsConvergedWhereNothingCanMove) {
+  for (const Scene& scene : scenesAtRest()) {
+    const System system(scene, {});
+    const Points start = testing::positionsOf(scene);
+    Relaxer relaxer;
+    for (int times = 0; times < 3; ++times) {
+      const auto result = relaxer.relax(system, start, options());
+      EXPECT_TRUE(result.converged) << result.message;
+      EXPECT_EQ(result.iterations, 0u);
+      EXPECT_EQ(result.positions, start);
+    }
+  }
+}
+
 Vector3 onEquator(double angle) { return {std::cos(angle), std::sin(angle), 0}; }
 
 /// A stiff spring stretched by `stretch` [rad], and a soft one of stiffness 1 that is 0.3 rad too
