@@ -43,7 +43,7 @@ class MapEnergy {
   /// Puts vertices somewhere; `evaluate` is to follow.
   void place(const Points& points);
   Points points() const;                   ///< in the order of the mesh
-  void writePoints(Points& points) const;  ///< the same over others, without memory
+  void writePoints(Points& points) const;  ///< over others; takes no memory
 
   /// The energy that vertices would have after a step along their tangent planes.
   double valueAfter(const Eigen::VectorXd& step) const;

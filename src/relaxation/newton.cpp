@@ -57,7 +57,7 @@ void Newton::forgetSteps() {
   radius_ = kInfinity;
   hold_.setZero(energy_.freeCount());
   iterations_ = calm_iterations_ = 0;
-  creeps_ = false;
+  creeping_ = false;
   earlier_drop_ = 0;
   pace_ = Pace::good;
 }
@@ -190,7 +190,7 @@ double Newton::allowedShare(const Eigen::VectorXd& step) {
 
 bool Newton::iterate() {
   constexpr int kMostAttempts = 40;
-  if (creepsOn()) return false;
+  if (creeps()) return false;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     ModelMinimum found = minimum(energy_.gradient(), tolerance());
     if (found.indefinite && (model_ == Model::tempered || model_ == Model::exact)) {
@@ -275,20 +275,20 @@ void Newton::correct() {
   model_ = model;
 }
 
-/// Whether hundreds of iterations have brought next to nothing, as on the way into a place where
-/// the energy has no derivative.
-bool Newton::creepsOn() {
+/// Returns whether 300 iterations have lowered the energy by less than 0.01 %, as on the way into a
+/// place where the energy has no derivative.
+bool Newton::creeps() {
   constexpr int kWindow = 300;
   constexpr double kNextToNothing = 1e-4;
   if (iterations_ % kWindow != 0) return false;
-  creeps_ = iterations_ > 0 && energy_.value() > (1 - kNextToNothing) * earlier_value_;
+  creeping_ = iterations_ > 0 && energy_.value() > (1 - kNextToNothing) * earlier_value_;
   earlier_value_ = energy_.value();
-  return creeps_;
+  return creeping_;
 }
 
 const char* Newton::whyStuck() const {
-  return creeps_ ? "300 iterations lowered the energy by less than 0.01 %"
-                 : "no step lowers the energy";
+  return creeping_ ? "300 iterations lowered the energy by less than 0.01 %"
+                   : "no step lowers the energy";
 }
 
 /// Forgets a scale that is far above the present stiffness somewhere, as where the way has led to

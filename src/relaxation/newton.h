@@ -81,7 +81,7 @@ class Newton : public Descent {
   double allowedShare(const Eigen::VectorXd& step);
   Trial tryStep(const ModelMinimum& minimum);
   void correct();
-  bool creepsOn();
+  bool creeps();
   void scaleToHere();
 
   int threads_;
@@ -102,7 +102,7 @@ class Newton : public Descent {
   double earlier_drop_ = 0;
   Pace pace_ = Pace::good;
   double earlier_value_ = 0;
-  bool creeps_ = false;
+  bool creeping_ = false;
 };
 
 }  // namespace spherical_springs::core

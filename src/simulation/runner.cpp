@@ -28,9 +28,9 @@ class Runner::Busy {
     const Lock lock(runner_.mutex_);
     runner_.requireIdle();
     const ControlLock control(runner_.control_);
-    if (runner_.closed_) throw Refusal(Refusal::Reason::closed);
+    if (runner_.closed_) throw Refusal(Refusal::Reason::closed, "the runner is closed");
     if (activity == Activity::stepping && runner_.running_) {
-      throw Refusal(Refusal::Reason::running);
+      throw Refusal(Refusal::Reason::running, "the simulation is running");
     }
     runner_.activity_ = activity;
     runner_.relax_progress_ = 0;
@@ -55,8 +55,12 @@ Activity Runner::activity() const {
 
 void Runner::requireIdle() const {
   const Activity now = activity();
-  if (now == Activity::relaxing) throw Refusal(Refusal::Reason::relaxing);
-  if (now == Activity::stepping) throw Refusal(Refusal::Reason::stepping);
+  if (now == Activity::relaxing) {
+    throw Refusal(Refusal::Reason::relaxing, "a relaxation is under way");
+  }
+  if (now == Activity::stepping) {
+    throw Refusal(Refusal::Reason::stepping, "a step is under way");
+  }
 }
 
 void Runner::setRunning(bool running) {

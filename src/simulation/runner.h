@@ -35,9 +35,7 @@ class Refusal : public std::runtime_error {
  public:
   enum class Reason { stepping, relaxing, running, closed };
 
-  explicit Refusal(Reason reason)
-      : std::runtime_error("the runner is stepping, relaxing, running or closed"),
-        reason_(reason) {}
+  Refusal(Reason reason, const char* what) : std::runtime_error(what), reason_(reason) {}
   Reason reason() const { return reason_; }
 
  private:
