@@ -78,6 +78,14 @@ Parts grid(std::uint32_t side) {
   return parts;
 }
 
+/// The benchmark scene displaced once more, so far that some triangles fold over.
+Parts foldedTriangles(int level) {
+  Random random(kSeed);
+  Parts parts = benchmarkParts(level, random);
+  displace(0.25 * parts.arcs().front().rest_angle, random, parts);
+  return parts;
+}
+
 Parts completeGraph(std::uint32_t count) {
   Random random(kSeed);
   Parts parts = particlesAnywhere(count, random);
@@ -227,6 +235,7 @@ std::vector<Network> networks() {
   add("oriented angles, a tenth inverted, 2,562", [] { return orientedAngles(4); });
   add("half of the arcs, 2,562", [] { return halfOfTheArcs(4); });
   add("separate components, 1,941", [] { return separateComponents(3); });
+  add("folded triangles, 10,242", [] { return foldedTriangles(5); });
   add("few pins, 2,562", [] { return pinned(4, 0.002); });
   add("most pinned, 2,562", [] { return pinned(4, 0.95); });
   add("stiffness over twelve decades, 2,562", [] { return stiffnessOverTwelveDecades(4); });

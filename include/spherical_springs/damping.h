@@ -13,11 +13,11 @@ namespace spherical_springs::core {
 /// M d omega / dt = tau - D omega, with D = viscous coefficients + sum of c g g^T over dampers.
 class Damping {
  public:
-  /// One damper: coefficient c [N m s/rad] on the rate sum of g . omega over some ends of springs.
-  /// `first_end` and on are places in the list of gradients g, one an end.
+  /// A damper on the rate sum of g . omega over some ends of springs.
   struct Damper {
-    std::uint32_t first_end, end_count;
-    double coefficient;
+    std::uint32_t first_end;  ///< place in the list of gradients g, which has one an end
+    std::uint32_t end_count;  ///< of successive ends
+    double coefficient;       ///< c [N m s/rad]
   };
 
   Damping() = default;  ///< none

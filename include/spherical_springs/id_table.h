@@ -9,9 +9,10 @@
 
 namespace spherical_springs::core {
 
-/// The largest id that an item may have, and the largest that a file may choose for one: what is
-/// added later gets the ids above.
-inline constexpr std::uint32_t kLargestId = 4294967294, kLargestChosenId = 4000000000;
+/// The largest id that an item may have.
+inline constexpr std::uint32_t kLargestId = 4294967294;
+/// The largest id that a file may choose for an item: what is added later gets the ids above.
+inline constexpr std::uint32_t kLargestChosenId = 4000000000;
 
 /// Items under ids that are given in order from 0 and never used again.
 template <class Item>
@@ -23,6 +24,7 @@ class IdTable {
   std::uint32_t nextId() const { return next_id_; }               ///< the id that `add` will give
   /// Item at an index below `size()`.
   Item& item(std::size_t index) { return items_[index]; }
+  /// Item at an index below `size()`.
   const Item& item(std::size_t index) const { return items_[index]; }
 
   /// Index of an id among the items, or nothing when there is none.

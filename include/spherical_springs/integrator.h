@@ -34,6 +34,7 @@ bool takesEnergyOut(IntegrationMethod method);
 
 /// Owns a copy of the state in a memory layout of its own; `give` converts it back. Equal numbers
 /// of steps give equal bits, however they are cut into calls and whatever is read in between.
+/// \snippet test_headers.cpp integrator
 class Integrator {
  public:
   virtual ~Integrator() = default;

@@ -16,9 +16,9 @@ static_assert(sizeof(Eigen::Index) == sizeof(std::ptrdiff_t),
 template <class Scalar, int Rows, int Columns>
 using Unaligned = Eigen::Matrix<Scalar, Rows, Columns, Eigen::ColMajor | Eigen::DontAlign>;
 
-using Vector2 = Unaligned<double, 2, 1>;
-using Vector3 = Eigen::Vector3d;  ///< of a size that Eigen aligns for no target
-using Matrix2 = Unaligned<double, 2, 2>;
+using Vector2 = Unaligned<double, 2, 1>;              ///< coordinates in a tangent plane
+using Vector3 = Eigen::Vector3d;                      ///< of a size that Eigen aligns for no target
+using Matrix2 = Unaligned<double, 2, 2>;              ///< by coordinates in tangent planes
 using Points = Unaligned<double, 3, Eigen::Dynamic>;  ///< one column a particle
 using Values = Unaligned<double, Eigen::Dynamic, 1>;  ///< one entry a particle, or a face
 

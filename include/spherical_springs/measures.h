@@ -44,15 +44,16 @@ class Account {
 };
 
 /// How well a simulation keeps what it should keep, and what its step costs in accuracy.
+/// \snippet test_headers.cpp measures
 struct Measures {
   double stable_time_step = 0;  ///< the largest that the method bears here [s]; may be infinite
   double local_error = 0;       ///< estimated, of one step [rad]
   double energy_error = 0;      ///< as Account has it
-  double angular_momentum_error = 0;
-  double norm_error = 0;  ///< max | |p| - 1 |
-  double max_torque = 0;  ///< on a particle that is not pinned [N m]
-  bool blown_up = false;  ///< the energy is far from what it was when the account began
-  std::string warning;    ///< what is wrong with the step, in words; empty when nothing is
+  double angular_momentum_error = 0;  ///< as Account has it
+  double norm_error = 0;              ///< max | |p| - 1 |
+  double max_torque = 0;              ///< on a particle that is not pinned [N m]
+  bool blown_up = false;              ///< the energy is far from what it was when the account began
+  std::string warning;  ///< what is wrong with the step, in words; empty when nothing is
 };
 
 /// Measures a state, and what a step of `time_step` [s] from there costs in accuracy.

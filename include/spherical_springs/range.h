@@ -12,11 +12,12 @@ class NonFinite : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// Allowed values, from `low`, or above it where that end is open, to `high`.
+/// Allowed values.
 struct Range {
-  double low, high;
-  const char* allowed;  ///< the range in words, for messages
-  bool open_low = false;
+  double low;             ///< the least
+  double high;            ///< the largest
+  const char* allowed;    ///< the range in words, for messages
+  bool open_low = false;  ///< whether `low` itself is not allowed
 
   /// Whether a value is allowed; no NaN is.
   bool contains(double value) const {
@@ -24,10 +25,13 @@ struct Range {
   }
 };
 
-/// Magnitudes far beyond any scene and far within what products of a few of them can hold.
-inline constexpr double kSmallest = 1e-30, kLargest = 1e30;
+/// The least magnitude of a stiffness or mass: products of a few such numbers are above 0.
+inline constexpr double kSmallest = 1e-30;
+/// The largest magnitude of a number of a scene: products of a few such numbers are finite.
+inline constexpr double kLargest = 1e30;
 
-/// No angular velocity [rad/s] that such magnitudes can bring about is above this.
+/// Above any angular velocity [rad/s] that numbers within `kSmallest` and `kLargest` can bring
+/// about.
 inline constexpr double kFastest = 1e100;
 
 /// Shortest text that reads back as `value`, or "nan", "inf", "-inf".

@@ -11,6 +11,7 @@
 
 namespace spherical_springs::core {
 
+/// Ways to a minimum of the energy.
 enum class RelaxationMethod {
   newton,    ///< Newton's method on the sphere
   dynamics,  ///< damped stepping as in the report, with a step chosen by itself
@@ -23,12 +24,13 @@ RelaxationMethod relaxationMethod(const std::string& name);
 
 /// The outcome of a relaxation.
 struct RelaxationResult {
-  Points positions;        ///< one unit vector a particle, in the order of ids
-  bool converged = false;  ///< the torque is within the tolerance, at a minimum of the energy
-  std::uint32_t iterations = 0;
-  double energy_before = 0, energy_after = 0;  ///< potential [J]
-  double max_torque = 0;                       ///< on a free particle [N m]
-  std::string message;                         ///< why it ended
+  Points positions;              ///< one unit vector a particle, in the order of ids
+  bool converged = false;        ///< the torque is within the tolerance, at a minimum of the energy
+  std::uint32_t iterations = 0;  ///< that were finished
+  double energy_before = 0;      ///< potential [J]
+  double energy_after = 0;       ///< potential [J]
+  double max_torque = 0;         ///< on a free particle [N m]
+  std::string message;           ///< why it ended
 };
 
 /// How far a relaxation has come.
@@ -39,7 +41,7 @@ struct RelaxationProgress {
 
 /// Choices of a relaxation.
 struct RelaxationOptions {
-  RelaxationMethod method = RelaxationMethod::newton;
+  RelaxationMethod method = RelaxationMethod::newton;  ///< how it descends
   /// Largest torque left on a free particle [N m]; 0: 1e-9 of the stiffness that the particle
   /// feels, half the trace of its block of the definite Hessian.
   double tolerance = 0;
@@ -83,6 +85,7 @@ class Relaxer {
 };
 
 /// Relaxes once, with a Relaxer of its own.
+/// \snippet test_headers.cpp relaxation
 RelaxationResult relax(const System& system, const Points& positions,
                        const RelaxationOptions& options);
 

@@ -34,11 +34,13 @@ struct Particle {
 
 /// How many items a scene may hold.
 struct SceneLimits {
-  /// As many as indices of 32 bits can tell apart; limits above count as these.
-  static constexpr std::size_t kMostParticles = 400'000'000, kMostSprings = 600'000'000;
+  /// The most particles that indices of 32 bits can tell apart; a limit above counts as this.
+  static constexpr std::size_t kMostParticles = 400'000'000;
+  /// The most springs that indices of 32 bits can tell apart; a limit above counts as this.
+  static constexpr std::size_t kMostSprings = 3'600'000'000 / (kMostEnds * (kMostEnds - 1));
 
-  std::size_t particles = 20'000'000;
-  std::size_t springs = 100'000'000;  ///< of all kinds together
+  std::size_t particles = 20'000'000;  ///< the most
+  std::size_t springs = 100'000'000;   ///< of all kinds together
 
   /// These limits where indices hold so many, and else as many as they hold.
   SceneLimits heldByIndices() const {
@@ -50,6 +52,8 @@ struct SceneLimits {
 /// throws std::invalid_argument, which names item, field, value and what is allowed, before
 /// anything is changed; so it is when memory runs out. Particles' places here are those at which
 /// they were last added or set.
+/// \snippet test_headers.cpp scene
+/// \snippet test_headers.cpp scene_refuses
 class Scene {
  public:
   /// An empty scene.
@@ -61,7 +65,7 @@ class Scene {
   Scene(SceneLimits limits, const std::vector<std::uint32_t>& particle_ids,
         std::vector<Particle> particles, const SpringIds& spring_ids, SpringLists springs);
 
-  const IdTable<Particle>& particles() const { return particles_; }
+  const IdTable<Particle>& particles() const { return particles_; }  ///< under their ids
   /// Springs of a kind, whose `particles` are ids.
   template <class Spring>
   const IdTable<Spring>& springs() const {
@@ -73,6 +77,7 @@ class Scene {
   /// @return their ids, in the order of `particles`.
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
 
+  /// The effect of a call of `setParticles`.
   struct Setting {
     std::vector<std::size_t> indices;  ///< of the particles that were set
     bool only_moved = true;            ///< whether masses, damping and pins are as they were
@@ -80,9 +85,10 @@ class Scene {
   /// Puts new values under old ids, one particle for each id.
   Setting setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
 
+  /// The effect of a call of `removeParticles`.
   struct Removal {
     std::vector<bool> particles;  ///< by index before the removal
-    std::size_t springs = 0;
+    std::size_t springs = 0;      ///< how many of all kinds
   };
   /// Removes particles and every spring that joins one of them.
   Removal removeParticles(const std::vector<std::uint32_t>& ids);
@@ -92,7 +98,8 @@ class Scene {
   /// @return the ids of the springs, in the order of the lists.
   SpringIds addSprings(SpringLists springs, const Points& positions);
   /// Puts new values under old ids, one spring for each id; `positions` as in `addSprings`.
-  void setSprings(const SpringIds& ids, SpringLists springs, const Points& positions);
+  /// @return whether each of them joins the particles that it joined before, in the same order.
+  bool setSprings(const SpringIds& ids, SpringLists springs, const Points& positions);
   /// Removes springs; no id may be given twice.
   void removeSprings(const SpringIds& ids);
 

@@ -9,8 +9,10 @@
 
 namespace spherical_springs::core {
 
+/// A scene and the moment that it was saved at.
+/// \snippet test_headers.cpp scene_file
 struct SceneFile {
-  Scene scene;
+  Scene scene;      ///< with particles where they were when it was saved
   double time = 0;  ///< simulated [s]
 };
 

@@ -16,30 +16,36 @@ namespace spherical_springs::core {
 
 /// For one thread at a time. Changing functions throw what Scene's throw, or std::bad_alloc, and
 /// then change nothing; each that changes something begins the account of energy anew.
+/// \snippet test_headers.cpp simulation
 class Simulation {
  public:
+  /// Choices that last as long as the simulation.
   struct Settings {
-    IntegrationMethod method = IntegrationMethod::verlet;
-    double time_step = 0.001;  ///< [s]
-    System::Options system;
-    SceneLimits limits;
+    IntegrationMethod method = IntegrationMethod::verlet;  ///< of `step`
+    double time_step = 0.001;                              ///< [s]
+    System::Options system;                                ///< damping of springs, and threads
+    SceneLimits limits;                                    ///< how much the scene may hold
   };
 
   /// An empty scene at time 0.
   explicit Simulation(const Settings& settings);
 
-  /// As Scene::addParticles; the others keep the places that they have come to.
+  /// Adds particles as Scene::addParticles does; the others keep the places that they have come to.
   std::vector<std::uint32_t> addParticles(std::vector<Particle> particles);
-  /// As Scene::setParticles; what is compiled for stepping is kept if masses, damping and pins are
-  /// as they were.
+  /// Sets particles as Scene::setParticles does. What is compiled for stepping is kept if masses,
+  /// damping and pins are as they were, and else the order of particles and springs in it.
   void setParticles(const std::vector<std::uint32_t>& ids, std::vector<Particle> particles);
-  /// As Scene::removeParticles.
+  /// Removes particles as Scene::removeParticles does.
   /// @return how many springs went with them.
   std::size_t removeParticles(const std::vector<std::uint32_t>& ids);
-  /// As Scene::addSprings, with rest values taken from where the particles are now.
+  /// Adds springs as Scene::addSprings does, with rest values taken from where the particles are
+  /// now.
   SpringIds addSprings(SpringLists springs);
-  /// As Scene::setSprings, with rest values taken from where the particles are now.
+  /// Sets springs as Scene::setSprings does, with rest values taken from where the particles are
+  /// now. The order of particles and springs that is compiled for stepping is kept if they join the
+  /// same particles.
   void setSprings(const SpringIds& ids, SpringLists springs);
+  /// Removes springs as Scene::removeSprings does.
   void removeSprings(const SpringIds& ids);
 
   void clear();  ///< Removes all particles and springs, and sets the time to 0.
@@ -60,10 +66,10 @@ class Simulation {
   /// Puts back an earlier state of the same scene, with as many particles.
   void restore(State state);
 
-  const Settings& settings() const { return settings_; }
-  const Scene& scene() const { return scene_; }
-  const State& state() const;  ///< where the particles are now
-  Scene presentScene() const;  ///< with the particles where they are now
+  const Settings& settings() const { return settings_; }  ///< as they were given
+  const Scene& scene() const { return scene_; }  ///< with particles where they were last set
+  const State& state() const;                    ///< where the particles are now
+  Scene presentScene() const;                    ///< with the particles where they are now
 
   /// Returns the scene as it is compiled, which is done when it is first asked for after a change.
   std::shared_ptr<const Plan> plan();
@@ -85,7 +91,8 @@ class Simulation {
   State& changeState();
   void beginAt(State start);
   void moved();
-  void changed();
+  void parametersChanged();
+  void topologyChanged();
 
   Settings settings_;
   Scene scene_;
@@ -94,6 +101,7 @@ class Simulation {
   bool integrator_has_state_ = false;
   // Made when first needed after a change; the plan and the integrator outlive moves.
   std::shared_ptr<const Plan> plan_;
+  std::shared_ptr<const Plan> earlier_plan_;  // of the same topology, with other parameters
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<Account> account_;
   std::uint64_t revision_ = 0;

@@ -8,9 +8,10 @@
 
 #include "spherical_springs/matrices.h"
 
+/// Geometry, springs, scenes, stepping and relaxation; no ROS.
 namespace spherical_springs::core {
 
-inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kPi = 3.14159265358979323846;  ///< half a turn [rad]
 
 /// Direction of any finite non-zero vector, whatever its magnitude. A vector that already has unit
 /// length to rounding comes back unchanged, so that a saved position is read back to the last bit.
@@ -47,6 +48,7 @@ struct Arc {
 };
 
 /// Coinciding or antipodal points have no axis of their own: there it is `perpendicular(a)`.
+/// \snippet test_headers.cpp sphere
 Arc arc(const Vector3& a, const Vector3& b);
 
 /// The invariants of a spherical triangle from which its solid angle and gradients come, after
@@ -60,6 +62,7 @@ struct Triangle {
   double squared_norm;
 };
 
+/// Returns the invariants of the triangle of three unit vectors.
 Triangle triangle(const Vector3& a, const Vector3& b, const Vector3& c);
 
 /// a . (b x c), accurate for small triangles and nearly antipodal pairs.

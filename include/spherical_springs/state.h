@@ -16,6 +16,7 @@ struct Progress {
 };
 
 /// Positions and velocities at a time. Columns are particles in the order of their ids.
+/// \snippet test_headers.cpp state
 struct State : Progress {
   Points positions;           ///< unit vectors
   Points angular_velocities;  ///< [rad/s], each normal to its position

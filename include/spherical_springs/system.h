@@ -16,9 +16,10 @@ namespace spherical_springs::core {
 /// own part of it (report's equation 5, with c = k_d / 4).
 enum class SpringDamping { relative, own };
 
+/// Energy stored in the springs of one kind.
 template <class Spring>
 struct EnergyOf {
-  double joules = 0;
+  double joules = 0;  ///< [J]
 };
 
 /// Energy stored in the springs of each kind.
@@ -28,31 +29,33 @@ struct PotentialEnergies : PerKind<EnergyOf> {
 
 /// Unchanging once made, so that many threads may use it. Particles and springs stand in the order
 /// of their ids, and springs name particles by index.
+/// \snippet test_headers.cpp system
 class System {
  public:
   /// Choices that concern all springs and particles.
   struct Options {
-    SpringDamping spring_damping = SpringDamping::relative;
+    SpringDamping spring_damping = SpringDamping::relative;  ///< of all damped springs
     int threads = 1;  ///< results do not depend on it, to the last bit
   };
 
   /// Compiles a scene. `options.threads`: at least 1.
   System(const Scene& scene, Options options);
 
-  Eigen::Index particleCount() const { return masses_.size(); }
+  Eigen::Index particleCount() const { return masses_.size(); }    ///< pinned ones among them
   const Values& masses() const { return masses_; }                 ///< [kg]
   const Values& inverseMasses() const { return inverse_masses_; }  ///< [1/kg], 0 where pinned
+  /// Whether a particle never moves by itself.
   bool pinned(Eigen::Index particle) const { return inverse_masses_[particle] == 0; }
   /// Whether a spring ends at a particle.
   bool joined(Eigen::Index particle) const {
     return first_end_[particle] < first_end_[particle + 1];
   }
-  const Damping& damping() const { return damping_; }
-  SpringDamping springDamping() const { return options_.spring_damping; }
+  const Damping& damping() const { return damping_; }  ///< of particles and springs
+  SpringDamping springDamping() const { return options_.spring_damping; }  ///< as was chosen
   /// Whether nothing turns the scene as a whole: no pins, and no damping but between particles.
   bool conservesAngularMomentum() const;
   double largestStiffness() const;  ///< of all kinds [J/rad^2, J/sr^2]; 0 without springs
-  int threads() const { return options_.threads; }
+  int threads() const { return options_.threads; }  ///< for loops over springs or particles
 
   /// Id of a particle, by its index.
   std::uint32_t particleId(std::size_t index) const { return particle_ids_[index]; }

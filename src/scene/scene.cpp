@@ -18,7 +18,8 @@ bool differOnlyInMotion(const Particle& a, const Particle& b) {
 // each patch the ends in others of the springs that it shares with them.
 constexpr std::uint64_t kMostIndices = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kMostParticles = SceneLimits::kMostParticles;
-constexpr std::uint64_t kMostPairs = 6 * std::uint64_t{SceneLimits::kMostSprings};
+constexpr std::uint64_t kMostPairs =
+    kMostEnds * (kMostEnds - 1) * std::uint64_t{SceneLimits::kMostSprings};
 static_assert(kMostParticles + kMostParticles / 64 + kMostPairs < kMostIndices);
 // Rows of a patch are named by where they begin, four numbers each.
 static_assert(4 * (kMostParticles + 8) < kMostIndices);
@@ -112,7 +113,7 @@ SpringIds Scene::addSprings(SpringLists springs, const Points& positions) {
   return ids;
 }
 
-void Scene::setSprings(const SpringIds& ids, SpringLists springs, const Points& positions) {
+bool Scene::setSprings(const SpringIds& ids, SpringLists springs, const Points& positions) {
   PerKind<Indices> indices;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
@@ -122,13 +123,17 @@ void Scene::setSprings(const SpringIds& ids, SpringLists springs, const Points& 
                                        idListName<Spring>(), oneOf<Spring>())};
   });
   checkSprings(springs, positions);
+  bool same_particles = true;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     const auto& list = springs.get<Spring>();
     for (std::size_t i = 0; i < list.size(); ++i) {
-      springs_.get<Spring>().item(indices.get<Spring>().values[i]) = list[i];
+      Spring& present = springs_.get<Spring>().item(indices.get<Spring>().values[i]);
+      same_particles = same_particles && present.particles == list[i].particles;
+      present = list[i];
     }
   });
+  return same_particles;
 }
 
 void Scene::removeSprings(const SpringIds& ids) {

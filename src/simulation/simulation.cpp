@@ -51,11 +51,18 @@ void Simulation::moved() {
   account_.reset();
 }
 
-/// Follows a change of anything else.
-void Simulation::changed() {
+/// Follows a change of numbers of particles or springs, under which these join as before.
+void Simulation::parametersChanged() {
   moved();
+  if (plan_) earlier_plan_ = std::move(plan_);
   plan_.reset();
   integrator_.reset();
+}
+
+/// Follows a change of anything else.
+void Simulation::topologyChanged() {
+  parametersChanged();
+  earlier_plan_.reset();
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {
@@ -68,7 +75,7 @@ std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> partic
   auto ids = scene_.addParticles(std::move(particles));
   for (Eigen::Index i = before; i < count; ++i) place(scene_.particles().item(i), i, grown);
   state_ = std::move(grown);
-  changed();
+  topologyChanged();
   return ids;
 }
 
@@ -77,7 +84,7 @@ void Simulation::setParticles(const std::vector<std::uint32_t>& ids,
   const auto [indices, only_moved] = scene_.setParticles(ids, std::move(particles));
   if (indices.empty()) return;
   for (const std::size_t i : indices) place(scene_.particles().item(i), i, changeState());
-  only_moved ? moved() : changed();
+  only_moved ? moved() : parametersChanged();
 }
 
 std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
@@ -93,24 +100,25 @@ std::size_t Simulation::removeParticles(const std::vector<std::uint32_t>& ids) {
   }
   state.positions.conservativeResize(Eigen::NoChange, kept);
   state.angular_velocities.conservativeResize(Eigen::NoChange, kept);
-  changed();
+  topologyChanged();
   return removal.springs;
 }
 
 SpringIds Simulation::addSprings(SpringLists springs) {
   SpringIds ids = scene_.addSprings(std::move(springs), state().positions);
-  if (anyOf(ids)) changed();
+  if (anyOf(ids)) topologyChanged();
   return ids;
 }
 
 void Simulation::setSprings(const SpringIds& ids, SpringLists springs) {
-  scene_.setSprings(ids, std::move(springs), state().positions);
-  if (anyOf(ids)) changed();
+  const bool same_particles = scene_.setSprings(ids, std::move(springs), state().positions);
+  if (!anyOf(ids)) return;
+  same_particles ? parametersChanged() : topologyChanged();
 }
 
 void Simulation::removeSprings(const SpringIds& ids) {
   scene_.removeSprings(ids);
-  if (anyOf(ids)) changed();
+  if (anyOf(ids)) topologyChanged();
 }
 
 void Simulation::clear() {
@@ -133,7 +141,7 @@ void Simulation::load(SceneFile file) {
 
 void Simulation::beginAt(State start) {
   changeState() = std::move(start);
-  changed();
+  topologyChanged();
 }
 
 void Simulation::step(std::uint64_t steps) {
@@ -169,7 +177,11 @@ Scene Simulation::presentScene() const {
 }
 
 std::shared_ptr<const Plan> Simulation::plan() {
-  if (!plan_) plan_ = std::make_shared<const Plan>(scene_, settings_.system);
+  if (!plan_) {
+    plan_ = earlier_plan_ ? std::make_shared<const Plan>(scene_, settings_.system, *earlier_plan_)
+                          : std::make_shared<const Plan>(scene_, settings_.system);
+    earlier_plan_.reset();
+  }
   return plan_;
 }
 

@@ -38,12 +38,13 @@ class Cut {
   template <class Visitor>
   void forEachShare(const std::vector<Element>& elements, const Visitor& visit) const {
     for (std::uint32_t e = 0; e < elements.size(); ++e) {
-      std::array<std::uint32_t, 3> seen{kNone, kNone, kNone};
+      std::array<std::uint32_t, kMostEnds> seen;
       std::size_t seen_count = 0;
       for (const std::uint32_t end : elements[e].ends) {
         if (end == kNone) continue;
         const std::uint32_t patch = patch_of_[end];
-        if (std::find(seen.begin(), seen.end(), patch) != seen.end()) continue;
+        const auto seen_end = seen.begin() + seen_count;
+        if (std::find(seen.begin(), seen_end, patch) != seen_end) continue;
         seen[seen_count++] = patch;
         visit(patch, e);
       }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -64,6 +63,11 @@ OrientedAngleSpring springOf(const OrientedArcDampers& group, std::uint32_t lane
   return spring;
 }
 
+template <class Spring>
+const Spring& springOf(const PlainDampers<Spring>& group, std::uint32_t lane) {
+  return group.springs[lane];
+}
+
 template <class Dampers>
 void takeExactly(const Dampers& group, std::uint32_t lane, const Row* positions,
                  GradientsOf<Dampers>& gradients) {
@@ -85,7 +89,7 @@ void DampedKick::takeGradients(std::size_t patch, const Row* positions) {
     using Spring = typename decltype(kind)::type;
     const auto [begin, end] = dampers_.shares()[patch].get<Spring>().groups;
     if (begin == end) return;
-    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    const auto& kernels = damperKernels<Spring>(kernels_);
     const auto* const groups = dampers_.groups().get<Spring>().data() + begin;
     auto* const gradients = gradients_.get<Spring>().data() + begin;
     const std::uint32_t hard_count =
@@ -165,7 +169,7 @@ double DampedKick::addTerm(std::size_t patch, const SeriesTerm& term,
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     const auto [begin, end] = dampers_.shares()[patch].get<Spring>().groups;
-    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    const auto& kernels = damperKernels<Spring>(kernels_);
     kernels.add_rates(dampers_.groups().get<Spring>().data() + begin,
                       gradients_.get<Spring>().data() + begin, end - begin, own_, last, rates);
   });

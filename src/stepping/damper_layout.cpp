@@ -25,12 +25,13 @@ class DamperLayout::Builder {
       std::iota(home_.begin() + patch.first_place,
                 home_.begin() + patch.first_place + patch.particle_count, patch.first_row);
     }
+    elements_ = dampedElementsOf(system, places_);
     dampers.shares_.resize(layout.patches().size());
   }
 
   template <class Spring>
   void fill() {
-    const auto elements = dampedElementsOf<Spring>(system_, places_);
+    const std::vector<Element>& elements = elements_.get<Spring>();
     Shares shares = cut_.share(elements);
     for (std::uint32_t p = 0; p < shares_.size(); ++p) {
       const auto begin = shares.begin(p), end = shares.end(p);
@@ -88,6 +89,8 @@ class DamperLayout::Builder {
     group.root_coefficient[lane] = std::sqrt(spring.damping);
     if constexpr (std::is_same_v<Spring, OrientedAngleSpring>) {
       group.width[lane] = effectiveWidth(spring);
+    } else if constexpr (!kHasStepKernels<Spring>) {
+      group.springs[lane] = spring;
     }
   }
 
@@ -105,6 +108,7 @@ class DamperLayout::Builder {
   std::vector<std::uint32_t> places_;  // of particles
   std::vector<std::uint32_t> home_;    // rows of places
   std::vector<std::uint32_t> row_of_;  // in the present patch, by owned row
+  PerKind<DampedElements> elements_;
   std::vector<PerKind<DamperShare>>& shares_ = dampers_.shares_;
 };
 

@@ -13,7 +13,7 @@
 namespace spherical_springs::core {
 
 template <class Spring>
-struct DampersFor;
+struct DampersFor : Kind<PlainDampers<Spring>> {};
 template <>
 struct DampersFor<AngleSpring> : Kind<ArcDampers> {};
 template <>
@@ -22,6 +22,23 @@ template <>
 struct DampersFor<OrientedAngleSpring> : Kind<OrientedArcDampers> {};
 template <class Spring>
 using DampersOf = typename DampersFor<Spring>::type;
+
+/// Kernels for a kind that `DampingKernels` do not have; its gradients they leave to its formula.
+template <class Spring>
+struct PlainDamperKernels {
+  std::conditional_t<kHasStepKernels<Spring>, std::tuple<>, DamperKernels<DampersOf<Spring>>> all;
+};
+const PerKind<PlainDamperKernels>& plainDamperKernels();
+
+/// Returns the kernels for a kind of springs.
+template <class Spring>
+const DamperKernels<DampersOf<Spring>>& damperKernels(const DampingKernels& kernels) {
+  if constexpr (kHasStepKernels<Spring>) {
+    return std::get<DamperKernels<DampersOf<Spring>>>(kernels.springs);
+  } else {
+    return plainDamperKernels().get<Spring>().all;
+  }
+}
 
 template <class Spring>
 struct DamperGroups : std::vector<DampersOf<Spring>> {};
@@ -37,7 +54,7 @@ struct DamperShare {
 /// Springs between patches, each once.
 struct SharedDamper {
   std::uint32_t group, lane;
-  std::array<std::uint32_t, 3> rows;  ///< owned, of its ends
+  std::array<std::uint32_t, kMostEnds> rows;  ///< owned, of its ends
 };
 template <class Spring>
 struct SharedDampers : std::vector<SharedDamper> {};

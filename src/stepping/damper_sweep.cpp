@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <tuple>
 
 namespace spherical_springs::core {
 namespace {
@@ -79,7 +78,7 @@ double DamperSweep::innerForward(std::size_t patch, Row* velocities) const {
   double taken = 0;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
-    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    const auto& kernels = damperKernels<Spring>(kernels_);
     taken += kernels.forward(chain<Spring>(patch), own_, velocities->values);
   });
   return taken;
@@ -89,7 +88,7 @@ double DamperSweep::innerBackward(std::size_t patch, Row* velocities) const {
   double taken = 0;
   forEachKindBackward([&](auto kind) {
     using Spring = typename decltype(kind)::type;
-    const auto& kernels = std::get<DamperKernels<DampersOf<Spring>>>(kernels_.springs);
+    const auto& kernels = damperKernels<Spring>(kernels_);
     taken += kernels.backward(chain<Spring>(patch), own_, velocities->values);
   });
   return taken;

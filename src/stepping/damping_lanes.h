@@ -2,9 +2,9 @@
 // is compiled for.
 #pragma once
 
-#include "stepping/any_elements.h"
 #include "stepping/damping_kernels.h"
 #include "stepping/particle_lanes.h"
+#include "stepping/step_batch.h"
 
 namespace {
 
@@ -38,39 +38,34 @@ struct FreshGradients : LaneGradients<kEnds> {
   LaneMask hard;
 };
 
+/// Turns slopes at the ends into gradients as `Condition` has them: p x grad C = slope x p.
+template <class Formula, std::size_t kEnds>
+[[gnu::always_inline]] inline FreshGradients<kEnds> gradientsBy(const Formula& formula,
+                                                                const Lanes3 (&points)[kEnds]) {
+  Lanes3 slopes[kEnds];
+  formula.slopes(Lanes{} + 1, slopes);
+  FreshGradients<kEnds> gradients;
+  for (std::size_t i = 0; i + 1 < kEnds; ++i) gradients.of[i] = cross(slopes[i], points[i]);
+  gradients.hard = formula.hard;
+  return gradients;
+}
+
 FreshGradients<2> gradientsOf(const Batch<ArcDampers>& batch, const double* positions) {
-  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions);
-  const Lanes3 chord = b - a, sum = a + b;
-  const Lanes3 normal = cross(chord, sum);
-  const Lanes near = 0.25 * dot(chord, chord), far = 0.25 * dot(sum, sum);
-  return {{{1 / squareRoot(dot(normal, normal)) * normal}},
-          ~((near >= kShortest) & (far >= kShortest))};
+  const Lanes3 points[2] = {batch.gather(0, positions), batch.gather(1, positions)};
+  return gradientsBy(AngleLanes(points[0], points[1]), points);
 }
 
 FreshGradients<3> gradientsOf(const Batch<TriangleDampers>& batch, const double* positions) {
-  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
-               c = batch.gather(2, positions);
-  const TriangleEdges e(a, b, c);
-  const Lanes squared_norm = e.squaredNorm();
-  const Lanes alpha = 2 * e.triple_product / squared_norm, beta = 2 * e.denominator / squared_norm;
-  return {{{cross(alpha * (e.ab - e.ca) + tripleProductForce(beta, a, e.bc, e), a),
-            cross(alpha * (e.bc - e.ab) + tripleProductForce(beta, b, e.ca, e), b)}},
-          isNearlyAntipodal(squared_norm)};
+  const Lanes3 points[3] = {batch.gather(0, positions), batch.gather(1, positions),
+                            batch.gather(2, positions)};
+  return gradientsBy(SolidAngleLanes(points[0], points[1], points[2]), points);
 }
 
 FreshGradients<3> gradientsOf(const Batch<OrientedArcDampers>& batch, const double* positions) {
-  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
-               c = batch.gather(2, positions);
-  const TriangleEdges e(a, b, c);
-  const Lanes width = load(batch.group->width + batch.first);
-  const AnyAngle angle = anyAngle(a, b);
-  const LaneSign sign = signOf(e.triple_product / width);
-  const Lanes3 on_a = sign.value / angle.sine * angle.beside;
-  const Lanes3 on_b = select(angle.is_far, on_a, negative(on_a));
-  const Lanes across = sign.slope * angle.value / width;
-  return {{{cross(on_a + tripleProductForce(across, a, e.bc, e), a),
-            cross(on_b + tripleProductForce(across, b, e.ca, e), b)}},
-          angle.hard | (width <= 0)};
+  const Lanes3 points[3] = {batch.gather(0, positions), batch.gather(1, positions),
+                            batch.gather(2, positions)};
+  return gradientsBy(
+      OrientedAngleLanes(points[0], points[1], points[2], batch.lanes(batch.group->width)), points);
 }
 
 template <class Dampers>

@@ -1,7 +1,6 @@
 #include "stepping/elements.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "base/buckets.h"
@@ -11,23 +10,35 @@ namespace {
 
 using Places = std::vector<std::uint32_t>;
 
-double widthOf(const AngleSpring&) { return 0; }
-double widthOf(const SolidAngleSpring&) { return 0; }
-double widthOf(const OrientedAngleSpring& spring) { return effectiveWidth(spring); }
+/// Returns whether a spring is the same when its ends are turned round.
+template <class Spring>
+constexpr bool isCyclic() {
+  return kHasStepKernels<Spring> && Spring::kCorners == Spring::kParticles;
+}
 
 /// A spring alone; turned to have the first end first where that is the same.
 template <class Spring>
 Element elementOf(const SpringList<Spring>& springs, std::uint32_t index, const Places& places) {
   Element element;
+  element.ends.fill(kNone);
   element.springs[0] = index;
   const auto begin = element.ends.begin(), end = begin + Spring::kParticles;
   for (std::size_t i = 0; i < Spring::kParticles; ++i) {
     element.ends[i] = places[springs[index].particles[i]];
   }
-  if (Spring::kCorners == Spring::kParticles) {
+  if (isCyclic<Spring>()) {
     std::rotate(begin, std::min_element(begin, end), end);
   }
   return element;
+}
+
+/// Returns the numbers that make a spring what it is.
+template <class Spring>
+std::vector<double> fieldsOf(const Spring& spring) {
+  std::vector<double> fields;
+  Spring::visitFields(spring,
+                      [&](const char*, double value, const Range&) { fields.push_back(value); });
+  return fields;
 }
 
 /// Elements of one spring each, of those that are wanted, by their ends and, where those are the
@@ -42,19 +53,26 @@ std::vector<Element> sortedSprings(const SpringList<Spring>& springs, const Plac
       visit(element.ends[0], element);
     }
   });
-  const auto key = [&](const Element& element) {
-    const Spring& spring = springs[element.springs[0]];
-    return std::make_tuple(spring.restValue(), spring.stiffness, widthOf(spring), spring.damping);
-  };
   for (std::size_t place = 0; place < places.size(); ++place) {
     std::sort(by_first_end.begin(place), by_first_end.end(place),
               [&](const Element& a, const Element& b) {
-                if (a.ends[1] != b.ends[1]) return a.ends[1] < b.ends[1];
-                if (a.ends[2] != b.ends[2]) return a.ends[2] < b.ends[2];
-                return key(a) < key(b);
+                if (a.ends != b.ends) return a.ends < b.ends;
+                return fieldsOf(springs[a.springs[0]]) < fieldsOf(springs[b.springs[0]]);
               });
   }
   return std::move(by_first_end.items);
+}
+
+template <class Spring>
+struct SortedElements : std::vector<Element> {
+  using std::vector<Element>::operator=;
+};
+
+/// Returns whether two sorted elements have the same ends.
+bool anyParallel(const std::vector<Element>& sorted) {
+  return std::adjacent_find(sorted.begin(), sorted.end(), [](const Element& a, const Element& b) {
+           return a.ends == b.ends;
+         }) != sorted.end();
 }
 
 /// Which edges of triangles join two ends.
@@ -97,9 +115,9 @@ struct Sides {
 
 /// Gives arcs to triangles that have them as a side, to those with the fewest first.
 /// @return the arcs left over.
-std::vector<Element> giveAway(const std::vector<Element>& arcs,
-                              const std::vector<Element>& triangles, std::size_t place_count,
-                              std::vector<Sides>& sides) {
+std::vector<Element> giveAway(std::vector<Element> arcs, const std::vector<Element>& triangles,
+                              std::size_t place_count, std::vector<Sides>& sides) {
+  if (triangles.empty()) return arcs;
   const EdgeTable table(triangles, place_count);
   std::vector<Element> left;
   for (const Element& arc : arcs) {
@@ -125,7 +143,7 @@ Element joined(Element triangle, Sides sides) {
   const int count = sides.count();
   for (int turn = 0; turn < 3; ++turn) {
     if ((count < 1 || sides.arcs[0] != kNone) && (count < 2 || sides.arcs[1] != kNone)) break;
-    std::rotate(triangle.ends.begin(), triangle.ends.begin() + 1, triangle.ends.end());
+    std::rotate(triangle.ends.begin(), triangle.ends.begin() + 1, triangle.ends.begin() + 3);
     std::rotate(sides.arcs.begin(), sides.arcs.begin() + 1, sides.arcs.end());
   }
   triangle.springs[1] = sides.arcs[0];
@@ -136,29 +154,37 @@ Element joined(Element triangle, Sides sides) {
 }  // namespace
 
 ElementLists elementsOf(const System& system, const Places& places) {
-  const auto every = [](const auto&) { return true; };
   ElementLists lists;
-  auto& arcs = lists[0];
-  arcs = sortedSprings(system.springs<AngleSpring>(), places, every);
-  lists[4] = sortedSprings(system.springs<OrientedAngleSpring>(), places, every);
-  const auto triangles = sortedSprings(system.springs<SolidAngleSpring>(), places, every);
-  if (triangles.empty()) return lists;
+  PerKind<SortedElements> sorted;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    std::vector<Element>& elements = sorted.get<Spring>();
+    elements = sortedSprings(system.springs<Spring>(), places, [](const Spring&) { return true; });
+    lists.any_parallel = lists.any_parallel || anyParallel(elements);
+    if constexpr (!kHasStepKernels<Spring>) {
+      lists.of[sortOf<PlainSprings<Spring>>()] = std::move(elements);
+    }
+  });
+  const std::vector<Element>& triangles = sorted.get<SolidAngleSpring>();
   std::vector<Sides> sides(triangles.size());
-  arcs = giveAway(arcs, triangles, places.size(), sides);
+  lists.of[sortOf<Arcs>()] =
+      giveAway(std::move(sorted.get<AngleSpring>()), triangles, places.size(), sides);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    lists[1 + sides[t].count()].push_back(joined(triangles[t], sides[t]));
+    const std::size_t sort = sortOf<Triangles<0>>() + sides[t].count();
+    lists.of[sort].push_back(joined(triangles[t], sides[t]));
   }
+  lists.of[sortOf<OrientedArcs>()] = std::move(sorted.get<OrientedAngleSpring>());
   return lists;
 }
 
-template <class Spring>
-std::vector<Element> dampedElementsOf(const System& system, const Places& places) {
-  return sortedSprings(system.springs<Spring>(), places,
-                       [](const Spring& spring) { return spring.damping > 0; });
+PerKind<DampedElements> dampedElementsOf(const System& system, const Places& places) {
+  PerKind<DampedElements> elements;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    static_cast<std::vector<Element>&>(elements.get<Spring>()) = sortedSprings(
+        system.springs<Spring>(), places, [](const Spring& spring) { return spring.damping > 0; });
+  });
+  return elements;
 }
-
-template std::vector<Element> dampedElementsOf<AngleSpring>(const System&, const Places&);
-template std::vector<Element> dampedElementsOf<SolidAngleSpring>(const System&, const Places&);
-template std::vector<Element> dampedElementsOf<OrientedAngleSpring>(const System&, const Places&);
 
 }  // namespace spherical_springs::core

@@ -2,7 +2,7 @@
 // is compiled for.
 #pragma once
 
-#include "stepping/any_elements.h"
+#include "stepping/step_batch.h"
 
 namespace {
 
@@ -15,48 +15,30 @@ struct LaneConditions {
   LaneMask hard;
 };
 
-[[gnu::always_inline]] inline Lanes arcCondition(const Lanes3& a, const Lanes3& b,
-                                                 const Lanes& rest) {
-  return anyAngle(a, b).value - rest;
-}
-
 inline LaneConditions<1> conditionsOf(const Batch<Arcs>& batch, const double* positions) {
-  return {{arcCondition(batch.gather(0, positions), batch.gather(1, positions),
-                        LaneConstants(batch, 0).rest)},
-          LaneMask{}};
+  const AngleLanes arc(batch.gather(0, positions), batch.gather(1, positions));
+  return {{arc.value(LaneConstants(batch, 0).rest)}, LaneMask{}};
 }
 
 template <int kSprings>
 LaneConditions<kSprings> conditionsOf(const Batch<ElementGroup<3, kSprings>>& batch,
                                       const double* positions) {
-  const Lanes3 corners[3] = {batch.gather(0, positions), batch.gather(1, positions),
-                             batch.gather(2, positions)};
-  const TriangleEdges e(corners[0], corners[1], corners[2]);
+  const SolidAngleLanes triangle(batch.gather(0, positions), batch.gather(1, positions),
+                                 batch.gather(2, positions));
+  const Lanes3 corners[3] = {triangle.a, triangle.b, triangle.c};
   LaneConditions<kSprings> conditions;
-  conditions.of[0] = areaDifference(e.triple_product, e.denominator, LaneConstants(batch, 0).rest);
+  conditions.of[0] = triangle.value(LaneConstants(batch, 0).rest);
   for (int i = 1; i < kSprings; ++i) {
-    conditions.of[i] = arcCondition(corners[i - 1], corners[i], LaneConstants(batch, i).rest);
+    conditions.of[i] = AngleLanes(corners[i - 1], corners[i]).value(LaneConstants(batch, i).rest);
   }
-  conditions.hard = isNearlyAntipodal(e.squaredNorm());
+  conditions.hard = triangle.hard;
   return conditions;
 }
 
 inline LaneConditions<1> conditionsOf(const Batch<OrientedArcs>& batch, const double* positions) {
-  const Lanes3 a = batch.gather(0, positions), b = batch.gather(1, positions),
-               c = batch.gather(2, positions);
-  const Lanes width = load(batch.group->width + batch.first);
-  const LaneSign sign = signOf(TriangleEdges(a, b, c).triple_product / width);
-  const Lanes rest = load(batch.group->rest + batch.first);
-  return {{sign.value * anyAngle(a, b).value - rest}, width <= 0};
-}
-
-template <int kEnds, int kSprings>
-[[gnu::always_inline]] inline Lanes stiffnessOf(const Batch<ElementGroup<kEnds, kSprings>>& batch,
-                                                int spring) {
-  return LaneConstants(batch, spring).stiffness;
-}
-[[gnu::always_inline]] inline Lanes stiffnessOf(const Batch<OrientedArcs>& batch, int) {
-  return load(batch.group->stiffness + batch.first);
+  const OrientedAngleLanes oriented(batch.gather(0, positions), batch.gather(1, positions),
+                                    batch.gather(2, positions), batch.lanes(batch.group->width));
+  return {{oriented.value(LaneConstants(batch, 0).rest)}, oriented.is_sharp};
 }
 
 /// Which elements have their first end below an offset.
@@ -79,7 +61,8 @@ std::uint32_t addEnergies(const Group* groups, std::uint32_t group_count, const 
       const LaneConditions<kSprings> conditions = conditionsOf(batch, positions);
       const LaneMask counted = firstEndBelow(batch, limit);
       for (int i = 0; i < kSprings; ++i) {
-        const Lanes energy = 0.5 * stiffnessOf(batch, i) * conditions.of[i] * conditions.of[i];
+        const Lanes stiffness = LaneConstants(batch, i).stiffness;
+        const Lanes energy = 0.5 * stiffness * conditions.of[i] * conditions.of[i];
         sums[i] += select0(counted & ~conditions.hard, energy);
       }
       const LaneMask left = counted & conditions.hard;

@@ -50,11 +50,7 @@ PotentialEnergies Evaluation::potential() const {
 PotentialEnergies Evaluation::potentialOf(const Patch& patch) const {
   PotentialEnergies energies;
   const auto scratch = scratches_.lease(patch);
-  addEnergies<0>(patch, *scratch, energies);
-  addEnergies<1>(patch, *scratch, energies);
-  addEnergies<2>(patch, *scratch, energies);
-  addEnergies<3>(patch, *scratch, energies);
-  addEnergies<4>(patch, *scratch, energies);
+  forEachSort([&](auto sort) { addEnergies(sort, patch, *scratch, energies); });
   return energies;
 }
 
@@ -70,21 +66,25 @@ double& firstOf(const ElementGroup<3, kSprings>&, PotentialEnergies& energies) {
 double& firstOf(const OrientedArcs&, PotentialEnergies& energies) {
   return energies.get<OrientedAngleSpring>().joules;
 }
+template <class Spring>
+double& firstOf(const PlainSprings<Spring>&, PotentialEnergies& energies) {
+  return energies.get<Spring>().joules;
+}
 
 }  // namespace
 
 // A spring counts in the patch of the first end of its element.
-template <int kSort>
-void Evaluation::addEnergies(const Patch& patch, Scratch& scratch,
+template <class Group>
+void Evaluation::addEnergies(Kind<Group> sort, const Patch& patch, Scratch& scratch,
                              PotentialEnergies& energies) const {
-  const auto [begin, end] = patch.groups[kSort];
+  const auto [begin, end] = patch.groups[sortOf<Group>()];
   if (begin == end) return;
-  const auto* const groups = std::get<kSort>(layout_.groups()).data() + begin;
+  const Group* const groups = std::get<GroupList<Group>>(layout_.groups()).data() + begin;
   const Row* const positions = &positions_[patch.first_row];
   ElementEnergies added = {0, 0};
-  const std::uint32_t hard_count = std::get<kSort>(kernels_.energies)(
-      groups, end - begin, positions->values, kRowLength * patch.slotCount(), added,
-      scratch.hard.data());
+  const std::uint32_t hard_count =
+      energyKernel(kernels_, sort)(groups, end - begin, positions->values,
+                                   kRowLength * patch.slotCount(), added, scratch.hard.data());
   firstOf(*groups, energies) += added.first;
   energies.get<AngleSpring>().joules += added.arcs;
   for (std::uint32_t h = 0; h < hard_count; ++h) {

@@ -34,8 +34,9 @@ class Evaluation {
   template <class Work>
   void forEachPatch(const Work& work) const;
   PotentialEnergies potentialOf(const Patch& patch) const;
-  template <int kSort>
-  void addEnergies(const Patch& patch, Scratch& scratch, PotentialEnergies& energies) const;
+  template <class Group>
+  void addEnergies(Kind<Group>, const Patch& patch, Scratch& scratch,
+                   PotentialEnergies& energies) const;
   template <class Visit>
   void forEachTorque(const Patch& patch, const Visit& visit) const;
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "spherical_springs/springs/kinds.h"
-#include "stepping/step_kernels.h"
+#include "stepping/plain_springs.h"
 
 namespace spherical_springs::core {
 
@@ -58,10 +58,15 @@ void forEachSpring(const ElementGroup<kEnds, kSprings>& group, std::uint32_t lan
 template <class Visitor>
 void forEachSpring(const OrientedArcs& group, std::uint32_t lane, const Visitor& visit) {
   OrientedAngleSpring spring;
-  spring.rest_angle = group.rest[lane];
-  spring.stiffness = group.stiffness[lane];
+  spring.rest_angle = group.springs[0].rest[lane];
+  spring.stiffness = group.springs[0].stiffness[lane];
   spring.width = widthOfSpring(group.width[lane]);
   visit(spring, rowsOf<3>(group, lane));
+}
+
+template <class Spring, class Visitor>
+void forEachSpring(const PlainSprings<Spring>& group, std::uint32_t lane, const Visitor& visit) {
+  visit(group.springs[lane], rowsOf<Spring::kParticles>(group, lane));
 }
 
 }  // namespace spherical_springs::core

@@ -22,20 +22,17 @@ void addExactly(const Spring& spring, const std::array<std::uint32_t, Spring::kP
 }  // namespace
 
 const Row* Forces::on(const Patch& patch, const Row* positions, Scratch& scratch) const {
-  addElements<0>(patch, positions, scratch);
-  addElements<1>(patch, positions, scratch);
-  addElements<2>(patch, positions, scratch);
-  addElements<3>(patch, positions, scratch);
-  addElements<4>(patch, positions, scratch);
+  forEachSort([&](auto sort) { addElements(sort, patch, positions, scratch); });
   return scratch.sums.data();
 }
 
-template <int kSort>
-void Forces::addElements(const Patch& patch, const Row* positions, Scratch& scratch) const {
-  const auto [begin, end] = patch.groups[kSort];
+template <class Group>
+void Forces::addElements(Kind<Group> sort, const Patch& patch, const Row* positions,
+                         Scratch& scratch) const {
+  const auto [begin, end] = patch.groups[sortOf<Group>()];
   if (begin == end) return;
-  const auto* const groups = std::get<kSort>(layout_.groups()).data() + begin;
-  const std::uint32_t hard_count = std::get<kSort>(kernels_.forces)(
+  const Group* const groups = std::get<GroupList<Group>>(layout_.groups()).data() + begin;
+  const std::uint32_t hard_count = forceKernel(kernels_, sort)(
       groups, end - begin, positions->values, scratch.sums[0].values, scratch.hard.data());
   for (std::uint32_t h = 0; h < hard_count; ++h) {
     const std::uint32_t element = scratch.hard[h];

@@ -22,8 +22,8 @@ class Forces {
   const Row* on(const Patch& patch, const Row* positions, Scratch& scratch) const;
 
  private:
-  template <int kSort>
-  void addElements(const Patch& patch, const Row* positions, Scratch& scratch) const;
+  template <class Group>
+  void addElements(Kind<Group>, const Patch& patch, const Row* positions, Scratch& scratch) const;
 
   const Layout& layout_;
   const StepKernels& kernels_;

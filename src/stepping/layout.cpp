@@ -11,6 +11,51 @@ namespace spherical_springs::core {
 
 namespace {
 
+template <class Spring, class Springs>
+void takeNumbersOf(const Spring& spring, Springs& springs, std::uint32_t lane) {
+  springs.rest[lane] = spring.restValue();
+  springs.stiffness[lane] = spring.stiffness;
+}
+
+// Each puts the numbers of the springs of an element, whose indices are given, into its lane.
+
+void takeNumbersOf(const System& system, const SpringIndices<Arcs>& indices, std::uint32_t lane,
+                   Arcs& group) {
+  takeNumbersOf(system.springs<AngleSpring>()[indices.of[0][lane]], group.springs[0], lane);
+}
+
+template <int kSprings>
+void takeNumbersOf(const System& system, const SpringIndices<ElementGroup<3, kSprings>>& indices,
+                   std::uint32_t lane, ElementGroup<3, kSprings>& group) {
+  takeNumbersOf(system.springs<SolidAngleSpring>()[indices.of[0][lane]], group.springs[0], lane);
+  for (int i = 1; i < kSprings; ++i) {
+    takeNumbersOf(system.springs<AngleSpring>()[indices.of[i][lane]], group.springs[i], lane);
+  }
+}
+
+void takeNumbersOf(const System& system, const SpringIndices<OrientedArcs>& indices,
+                   std::uint32_t lane, OrientedArcs& group) {
+  const OrientedAngleSpring& spring = system.springs<OrientedAngleSpring>()[indices.of[0][lane]];
+  takeNumbersOf(spring, group.springs[0], lane);
+  group.width[lane] = effectiveWidth(spring);
+}
+
+template <class Spring>
+void takeNumbersOf(const System& system, const SpringIndices<PlainSprings<Spring>>& indices,
+                   std::uint32_t lane, PlainSprings<Spring>& group) {
+  group.springs[lane] = system.springs<Spring>()[indices.of[0][lane]];
+}
+
+template <int kEnds, int kSprings>
+void slacken(ElementGroup<kEnds, kSprings>& group, std::uint32_t lane) {
+  for (auto& spring : group.springs) spring.stiffness[lane] = 0;
+}
+
+template <class Spring>
+void slacken(PlainSprings<Spring>& group, std::uint32_t lane) {
+  group.springs[lane].stiffness = 0;
+}
+
 /// Few enough that positions and torques stay in the cache next to the processor.
 std::size_t patchCountFor(std::size_t particles) {
   constexpr std::size_t kParticles = 1024, kEven = 4;
@@ -32,16 +77,15 @@ class Layout::Builder {
 
   void build() {
     const ElementLists lists = elementsOf(system_, places_);
-    std::array<Shares, 5> shares;
-    for (std::size_t sort = 0; sort < shares.size(); ++sort) {
-      shares[sort] = cut_.share(lists[sort]);
+    layout_.any_parallel_ = lists.any_parallel;
+    std::array<Shares, kSortCount> shares;
+    for (std::size_t sort = 0; sort < kSortCount; ++sort) {
+      shares[sort] = cut_.share(lists.of[sort]);
     }
-    reserve(shares, std::make_index_sequence<5>());
+    forEachSort([&](auto sort) { reserve(sort, shares); });
     for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
       Patch patch = beginPatch(p);
-      patch.groups = {fill<0>(lists, shares, p), fill<1>(lists, shares, p),
-                      fill<2>(lists, shares, p), fill<3>(lists, shares, p),
-                      fill<4>(lists, shares, p)};
+      forEachSort([&](auto sort) { fill(sort, lists, shares, p, patch); });
       endPatch(patch);
     }
     nameGhosts();
@@ -84,64 +128,50 @@ class Layout::Builder {
     return static_cast<std::uint32_t>(kRowLength * rowOf(place));
   }
 
-  template <std::size_t... kSorts>
-  void reserve(const std::array<Shares, 5>& shares, std::index_sequence<kSorts...>) {
-    const auto groupCount = [&](const Shares& of) {
-      std::size_t count = 0;
-      for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
-        count += roundedUpToGroup(of.first[p + 1] - of.first[p]) / kGroup;
-      }
-      return count;
-    };
-    (std::get<kSorts>(layout_.groups_).reserve(groupCount(shares[kSorts])), ...);
+  template <class Group>
+  void reserve(Kind<Group>, const std::array<Shares, kSortCount>& shares) {
+    const std::vector<std::uint32_t>& first = shares[sortOf<Group>()].first;
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < cut_.patchCount(); ++p) {
+      count += roundedUpToGroup(first[p + 1] - first[p]) / kGroup;
+    }
+    std::get<GroupList<Group>>(layout_.groups_).reserve(count);
+    std::get<IndexList<Group>>(layout_.springs_).reserve(count);
   }
 
-  template <class Spring, class Springs>
-  void setSpring(std::uint32_t index, Springs& springs, std::uint32_t lane) const {
-    const Spring& spring = system_.springs<Spring>()[index];
-    springs.rest[lane] = spring.restValue();
-    springs.stiffness[lane] = spring.stiffness;
-  }
-
-  template <int kEnds, int kSprings>
-  void setElement(const Element& element, std::uint32_t lane,
-                  ElementGroup<kEnds, kSprings>& group) {
-    for (int i = 0; i < kEnds; ++i) {
+  /// Puts an element into a lane: its ends, and the numbers and indices of its springs.
+  template <class Group>
+  void setElement(const Element& element, std::uint32_t lane, Group& group,
+                  SpringIndices<Group>& indices) {
+    for (std::size_t i = 0; i < std::size(group.ends); ++i) {
       group.ends[i][lane] = offsetOf(element.ends[i]);
     }
-    for (int i = 0; i < kSprings; ++i) {
-      if (kEnds == 3 && i == 0) {
-        setSpring<SolidAngleSpring>(element.springs[i], group.springs[i], lane);
-      } else {
-        setSpring<AngleSpring>(element.springs[i], group.springs[i], lane);
-      }
-    }
+    for (int i = 0; i < Group::kSpringsOfOne; ++i) indices.of[i][lane] = element.springs[i];
+    takeNumbersOf(system_, indices, lane, group);
   }
 
-  void setElement(const Element& element, std::uint32_t lane, OrientedArcs& group) {
-    for (int i = 0; i < 3; ++i) group.ends[i][lane] = offsetOf(element.ends[i]);
-    setSpring<OrientedAngleSpring>(element.springs[0], group, lane);
-    group.width[lane] = effectiveWidth(system_.springs<OrientedAngleSpring>()[element.springs[0]]);
-  }
-
-  template <int kEnds, int kSprings>
-  static void slacken(ElementGroup<kEnds, kSprings>& group, std::uint32_t lane) {
-    for (auto& spring : group.springs) spring.stiffness[lane] = 0;
-  }
-  static void slacken(OrientedArcs& group, std::uint32_t lane) { group.stiffness[lane] = 0; }
-
-  template <int kSort>
-  GroupRange fill(const ElementLists& lists, const std::array<Shares, 5>& shares,
-                  std::size_t patch) {
-    using Group = typename std::tuple_element_t<kSort, GroupLists>::value_type;
-    const std::uint32_t first = shares[kSort].first[patch];
-    const std::uint32_t count = shares[kSort].first[patch + 1] - first;
-    return appendGroups<Group>(
-        count, std::get<kSort>(layout_.groups_),
+  template <class Group>
+  void fill(Kind<Group>, const ElementLists& lists, const std::array<Shares, kSortCount>& shares,
+            std::size_t p, Patch& patch) {
+    constexpr std::size_t kSort = sortOf<Group>();
+    auto& groups = std::get<GroupList<Group>>(layout_.groups_);
+    auto& indices = std::get<IndexList<Group>>(layout_.springs_);
+    const std::uint32_t first = shares[kSort].first[p];
+    const std::uint32_t count = shares[kSort].first[p + 1] - first;
+    indices.resize(groups.size() + roundedUpToGroup(count) / kGroup);
+    const auto indicesOf = [&](Group& group) -> SpringIndices<Group>& {
+      return indices[&group - groups.data()];
+    };
+    patch.groups[kSort] = appendGroups<Group>(
+        count, groups,
         [&](std::uint32_t i, Group& group, std::uint32_t lane) {
-          setElement(lists[kSort][shares[kSort].items[first + i]], lane, group);
+          setElement(lists.of[kSort][shares[kSort].items[first + i]], lane, group,
+                     indicesOf(group));
         },
-        [](Group& group, std::uint32_t lane) { slacken(group, lane); });
+        [&](Group& group, std::uint32_t lane) {
+          slacken(group, lane);
+          indicesOf(group).of[0][lane] = kNone;
+        });
   }
 
   /// Turns ghosts from places in the order into owned rows.
@@ -164,9 +194,37 @@ class Layout::Builder {
 };
 
 Layout::Layout(const System& system, const Points& positions) : order_(curveOrder(positions)) {
+  build(system);
+}
+
+Layout::Layout(const Layout& earlier, const System& system) {
+  if (earlier.any_parallel_) {
+    order_ = earlier.order_;
+    build(system);
+  } else {
+    *this = earlier;
+    takeNumbers(system);
+  }
+}
+
+void Layout::build(const System& system) {
   std::vector<std::uint32_t> places(order_.size());
   for (std::uint32_t i = 0; i < places.size(); ++i) places[order_[i]] = i;
   Builder(*this, system, std::move(places)).build();
+}
+
+void Layout::takeNumbers(const System& system) {
+  forEachSort([&](auto sort) {
+    using Group = typename decltype(sort)::type;
+    auto& groups = std::get<GroupList<Group>>(groups_);
+    const auto& indices = std::get<IndexList<Group>>(springs_);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (std::uint32_t lane = 0; lane < kGroup; ++lane) {
+        if (indices[g].of[0][lane] == kNone) continue;
+        takeNumbersOf(system, indices[g], lane, groups[g]);
+      }
+    }
+  });
 }
 
 void Layout::updateGhosts(const Patch& patch, std::vector<Row>& rows) const {
@@ -178,9 +236,9 @@ void Layout::updateGhosts(const Patch& patch, std::vector<Row>& rows) const {
 
 std::size_t Layout::bytes() const {
   const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
-  const std::size_t groups =
-      std::apply([&](const auto&... lists) { return (of(lists) + ...); }, groups_);
-  return groups + of(order_) + of(ghosts_) + of(patches_);
+  const auto ofAll = [&](const auto&... lists) { return (of(lists) + ...); };
+  return std::apply(ofAll, groups_) + std::apply(ofAll, springs_) + of(order_) + of(ghosts_) +
+         of(patches_);
 }
 
 }  // namespace spherical_springs::core

@@ -18,9 +18,24 @@ struct GroupList : std::vector<Group> {
   using std::vector<Group>::vector;
 };
 
-/// Elements of each sort, in the order of `ElementLists`.
-using GroupLists = std::tuple<GroupList<Arcs>, GroupList<Triangles<0>>, GroupList<Triangles<1>>,
-                              GroupList<Triangles<2>>, GroupList<OrientedArcs>>;
+/// Indices in the system of the springs of a group; kNone in lanes left over.
+template <class Group>
+struct SpringIndices {
+  std::uint32_t of[Group::kSpringsOfOne][kGroup];
+};
+template <class Group>
+struct IndexList : std::vector<SpringIndices<Group>> {};
+
+template <template <class> class List, class Sorts>
+struct PerSortOf;
+template <template <class> class List, class... Groups>
+struct PerSortOf<List, std::tuple<Groups...>> {
+  using type = std::tuple<List<Groups>...>;
+};
+
+/// One list for each of the `Sorts`.
+template <template <class> class List>
+using PerSort = typename PerSortOf<List, Sorts>::type;
 
 /// About a thousand particles that are stepped together, and the springs that pull at them. A
 /// spring between patches is in each patch that owns one of its ends; particles of other patches
@@ -31,7 +46,7 @@ struct Patch {
   std::uint32_t first_row, row_count;         ///< of its own particles, then of ghosts
   std::uint32_t first_ghost;                  ///< in the list of ghosts
 
-  std::array<GroupRange, 5> groups;  ///< of each sort
+  std::array<GroupRange, kSortCount> groups;  ///< of each sort
 
   std::uint32_t slotCount() const { return roundedUpToGroup(particle_count); }
 };
@@ -41,6 +56,10 @@ class Layout {
   /// `positions`: where the particles are, or were, so that neighbours come to lie together.
   Layout(const System& system, const Points& positions);
 
+  /// The layout of a system that differs from that of `earlier` in the numbers of its particles and
+  /// springs alone, in the same order.
+  Layout(const Layout& earlier, const System& system);
+
   const std::vector<std::uint32_t>& order() const { return order_; }
   const std::vector<Patch>& patches() const { return patches_; }
   std::uint32_t slotCount() const { return slot_count_; }
@@ -49,7 +68,7 @@ class Layout {
 
   /// For each ghost, the row of the owned copy.
   const std::vector<std::uint32_t>& ghosts() const { return ghosts_; }
-  const GroupLists& groups() const { return groups_; }
+  const PerSort<GroupList>& groups() const { return groups_; }
 
   /// Copies the owned rows of a patch's ghosts to the rows that these have in the patch.
   void updateGhosts(const Patch& patch, std::vector<Row>& rows) const;
@@ -59,11 +78,16 @@ class Layout {
  private:
   class Builder;
 
+  void build(const System& system);
+  void takeNumbers(const System& system);
+
   std::vector<std::uint32_t> order_;
   std::vector<Patch> patches_;
   std::uint32_t slot_count_ = 0, row_count_ = 0, largest_patch_ = 0;
   std::vector<std::uint32_t> ghosts_;
-  GroupLists groups_;
+  PerSort<GroupList> groups_;
+  PerSort<IndexList> springs_;
+  bool any_parallel_ = false;  // springs, whose order depends on their numbers
 };
 
 }  // namespace spherical_springs::core

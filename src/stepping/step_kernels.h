@@ -13,6 +13,7 @@ namespace spherical_springs::core {
 /// The last group of a list is filled up with elements of no stiffness.
 template <int kEnds, int kSprings>
 struct alignas(Row) ElementGroup {
+  static constexpr int kSpringsOfOne = kSprings;
   struct Springs {
     double rest[kGroup], stiffness[kGroup];
   };
@@ -25,9 +26,8 @@ template <int kArcs>
 using Triangles = ElementGroup<3, 1 + kArcs>;
 
 /// Oriented arcs, as `OrientedAngleSpring` has them.
-struct alignas(Row) OrientedArcs {
-  std::uint32_t ends[3][kGroup];
-  double rest[kGroup], stiffness[kGroup], width[kGroup];  ///< the width in use, 0 for a sharp step
+struct OrientedArcs : ElementGroup<3, 1> {
+  double width[kGroup];  ///< in use; 0 for a sharp step
 };
 
 /// Adds the forces of elements to rows of `forces`, for particles at rows of `positions`; what of a

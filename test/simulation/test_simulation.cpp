@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
+#include "spherical_springs/plan.h"
 #include "spherical_springs/simulation.h"
+#include "stepping/layout.h"
 #include "support/relaxation_scenes.h"
 #include "support/scenes.h"
 
@@ -88,6 +93,62 @@ TEST(Simulation, MakesAnotherPlanWhenMassDampingOrPinChanges) {
     const auto plan = simulation.plan();
     simulation.setParticles({1, 0}, {simulation.scene().particles().item(1), other});
     EXPECT_NE(simulation.plan(), plan);
+  }
+}
+
+/// Gives every spring of a kind other numbers, under the ids that they have.
+template <class Spring>
+void setAll(Simulation& simulation, const std::function<void(Spring&)>& change) {
+  SpringIds ids;
+  SpringLists springs;
+  ids.get<Spring>().assign(simulation.scene().springs<Spring>().ids().begin(),
+                           simulation.scene().springs<Spring>().ids().end());
+  for (Spring spring : simulation.scene().springs<Spring>().items()) {
+    change(spring);
+    springs.get<Spring>().push_back(spring);
+  }
+  simulation.setSprings(ids, springs);
+}
+
+TEST(Simulation, KeepsTheOrderOfItsPlanWhenNumbersChange) {
+  Simulation simulation({});
+  simulation.load({testing::randomScene(2, 200, 300), 0});
+  const auto order = simulation.plan()->layout().order();
+  auto particles = simulation.scene().particles().items();
+  std::reverse(particles.begin(), particles.end());
+  simulation.setParticles(simulation.scene().particles().ids(), particles);
+  ASSERT_NE(Plan(simulation.scene(), {}).layout().order(), order);
+  setAll<AngleSpring>(simulation, [](AngleSpring& spring) { spring.rest_angle /= 2; });
+  EXPECT_EQ(simulation.plan()->layout().order(), order);
+  setAll<AngleSpring>(
+      simulation, [](AngleSpring& spring) { std::swap(spring.particles[0], spring.particles[1]); });
+  EXPECT_NE(simulation.plan()->layout().order(), order);
+}
+
+TEST(Simulation, StepsBySpringsAndParticlesAsTheyWereSet) {
+  testing::Random random(4);
+  Simulation simulation({});
+  simulation.load({testing::randomScene(2, 1500, 1000, 0.2, 1), 0});
+  const std::vector<std::function<void()>> changes = {
+      [&] {
+        setAll<AngleSpring>(simulation, [&](auto& s) { s.rest_angle = random.between(0, 3); });
+      },
+      [&] { setAll<SolidAngleSpring>(simulation, [](auto& s) { s.stiffness *= 3; }); },
+      [&] { setAll<OrientedAngleSpring>(simulation, [](auto& s) { s.width = s.damping = 0.1; }); },
+      [&] {
+        auto particles = simulation.presentScene().particles().items();
+        for (Particle& particle : particles) particle.mass = random.between(0.5, 3);
+        particles[7].pinned = true;
+        simulation.setParticles(simulation.scene().particles().ids(), particles);
+      }};
+  for (const auto& change : changes) {
+    simulation.step(3);
+    change();
+    Simulation anew({});
+    anew.load({simulation.presentScene(), simulation.state().time});
+    simulation.step(10);
+    anew.step(10);
+    EXPECT_LT((simulation.state().positions - anew.state().positions).norm(), 1e-12);
   }
 }
 

@@ -89,6 +89,54 @@ TEST(Evaluation, OfTheLargestTorqueIsThatOfOneSpringAtATime) {
   }
 }
 
+/// A scene with other numbers of particles and springs, which join as before.
+Scene withOtherNumbers(const Scene& scene) {
+  testing::Random random(9);
+  auto particles = scene.particles().items();
+  for (Particle& particle : particles) particle.mass *= random.between(1, 2);
+  SpringLists springs = testing::springsOf(scene);
+  forEachKind([&](auto kind) {
+    for (auto& spring : springs.get<typename decltype(kind)::type>()) {
+      spring = random.spring<std::decay_t<decltype(spring)>>(spring.particles);
+    }
+  });
+  return testing::sceneOf(particles, springs);
+}
+
+/// Several springs of each kind on the same particles.
+Scene parallelScene() {
+  const Scene scene = testing::randomScene(3, 1500, 500);
+  SpringLists springs = testing::springsOf(scene);
+  forEachKind([&](auto kind) {
+    auto& list = springs.get<typename decltype(kind)::type>();
+    const auto once = list;
+    for (const auto& spring : once) {
+      list.push_back(spring);
+      list.back().stiffness *= 1.7;
+    }
+  });
+  return testing::sceneOf(scene.particles().items(), springs);
+}
+
+TEST(Evaluation, OfAPlanAfterAnEarlierOneIsThatOfAPlanAnew) {
+  auto all = scenes();
+  all.push_back(parallelScene());
+  for (const Scene& scene : all) {
+    const auto earlier = planOf(scene);
+    const Scene changed = withOtherNumbers(scene);
+    const Points positions = testing::positionsOf(scene);
+    const Plan after(changed, {}, *earlier), anew(changed, {});
+    const PotentialEnergies energies = Evaluation(after, positions).potential();
+    const PotentialEnergies expected = Evaluation(anew, positions).potential();
+    forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      EXPECT_EQ(energies.get<Spring>().joules, expected.get<Spring>().joules) << Spring::kTable;
+    });
+    EXPECT_EQ(Evaluation(after, positions).maxTorque(), Evaluation(anew, positions).maxTorque());
+    EXPECT_EQ(after.layout().order(), earlier->layout().order());
+  }
+}
+
 // Below 1e-30 a pair counts as antipodal, and the area as undefined.
 TEST(Evaluation, OfTheLargestTorqueIsBoundedNearAntipodalPairs) {
   SpringLists springs;

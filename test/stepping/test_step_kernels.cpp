@@ -101,8 +101,8 @@ struct Bench {
     for (std::uint32_t e = 0; e < kCount; ++e) {
       OrientedArcs& group = groups[e / kGroup];
       for (int i = 0; i < 3; ++i) group.ends[i][e % kGroup] = rows[i][e];
-      group.rest[e % kGroup] = rest[0][e];
-      group.stiffness[e % kGroup] = stiffness[0][e];
+      group.springs[0].rest[e % kGroup] = rest[0][e];
+      group.springs[0].stiffness[e % kGroup] = stiffness[0][e];
       group.width[e % kGroup] = width[e];
     }
     runGroups(groups, kernels);

@@ -31,6 +31,7 @@ struct Distortion {
 };
 
 /// Summarises the distortion of one face or more.
+/// \snippet test_headers.cpp map
 Distortion summary(const FaceDistortion& faces);
 
 }  // namespace spherical_springs::mesh

@@ -18,6 +18,7 @@ class NoMap : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Choices of a map.
 struct MapOptions {
   /// 0: areas alone; more keeps faces nearer to equal corner angles, at the expense of areas.
   double angle_weight = 0;
@@ -39,6 +40,7 @@ struct MapOptions {
 /// the mesh and whose faces cover the sphere once, with areas as near to `shares` as can be found.
 /// @throw std::invalid_argument where `requireTopologicalSphere` does, or for shares that are not
 /// one a face, positive and at most 45 % of the sphere, or for options outside their range; NoMap.
+/// \snippet test_headers.cpp map
 Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const MapOptions& options = {});
 
 /// Maps a mesh from a start, one vector a vertex, whose directions count. A start that is folded,

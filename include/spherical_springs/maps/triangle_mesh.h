@@ -5,6 +5,7 @@
 
 #include "spherical_springs/sphere.h"
 
+/// Maps of closed meshes to the sphere.
 namespace spherical_springs::mesh {
 
 using core::Points;
@@ -15,9 +16,10 @@ using core::Vector3;
 /// One column a face: the indices of its vertices, counter-clockwise seen from outside.
 using Faces = core::Unaligned<std::int32_t, 3, Eigen::Dynamic>;
 
+/// Vertices and the triangles between them.
 struct TriangleMesh {
   Points vertices;  ///< [m]
-  Faces faces;
+  Faces faces;      ///< by indices of vertices
 };
 
 /// One a face [m^2].

@@ -9,17 +9,19 @@
 namespace spherical_springs::core {
 
 /// Angle spring (report, section 3.1): C = angle between two particles - rest_angle.
+/// \snippet test_headers.cpp angle
 struct AngleSpring {
-  static constexpr std::size_t kParticles = 2;
-  static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
+  static constexpr std::size_t kParticles = 2;  ///< that a spring joins
+  static constexpr std::size_t kCorners = 2;    ///< the first particles: the ends of an arc
+  /// The name of the list of such springs in messages and files.
   static constexpr const char* kTable = "angle_springs";
   static constexpr const char* kName = "angle spring";  ///< in messages, before an id
 
-  std::array<std::uint32_t, kParticles> particles{};
-  double rest_angle = 0;  ///< [rad]
-  double stiffness = 0;   ///< [J/rad^2]
-  double damping = 0;     ///< [N m s/rad]
-  bool at_rest = false;   ///< true: rest_angle is ignored and the present angle is taken
+  std::array<std::uint32_t, kParticles> particles{};  ///< ids in a scene, indices in a system
+  double rest_angle = 0;                              ///< [rad]
+  double stiffness = 0;                               ///< [J/rad^2]
+  double damping = 0;                                 ///< [N m s/rad]
+  bool at_rest = false;  ///< true: rest_angle is ignored and the present angle is taken
 
   /// Returns the rest value of the condition's quantity [rad].
   double restValue() const { return rest_angle; }

@@ -1,15 +1,52 @@
-// The list of kinds of springs. doc/architecture.md names the files that a new kind touches.
+// Lists over the kinds of springs, and loops over them.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <vector>
 
-#include "spherical_springs/springs/angle.h"
-#include "spherical_springs/springs/oriented_angle.h"
-#include "spherical_springs/springs/solid_angle.h"
+#include "spherical_springs/springs/kind_list.h"
 
 namespace spherical_springs::core {
+
+/// Tells a generic lambda the kind of spring that it is called for, which is its `type`.
+template <class Spring>
+struct Kind {
+  using type = Spring;  ///< the kind
+};
+
+namespace detail {
+
+template <class List>
+struct KindLoops;
+
+template <class... Springs>
+struct KindLoops<KindList<Springs...>> {
+  template <template <class> class Holder>
+  using Tuple = std::tuple<Holder<Springs>...>;
+
+  static constexpr std::size_t kMostEnds = std::max({Springs::kParticles...});
+
+  template <class Visitor>
+  static void forward(Visitor& visit) {
+    (visit(Kind<Springs>()), ...);
+  }
+
+  // The right operand of an assignment is evaluated before the left one.
+  template <class Visitor>
+  static void backward(Visitor& visit) {
+    int last = 0;
+    const auto visited = [&](auto kind) -> int& { return visit(kind), last; };
+    (visited(Kind<Springs>()) = ... = 0);
+  }
+};
+
+}  // namespace detail
+
+/// The largest number of particles that a spring of any kind joins.
+inline constexpr std::size_t kMostEnds = detail::KindLoops<Kinds>::kMostEnds;
 
 /// One `Holder<Spring>` for each kind of spring.
 template <template <class> class Holder>
@@ -20,35 +57,27 @@ class PerKind {
   Holder<Spring>& get() {
     return std::get<Holder<Spring>>(holders_);
   }
+  /// Returns the holder of a kind.
   template <class Spring>
   const Holder<Spring>& get() const {
     return std::get<Holder<Spring>>(holders_);
   }
 
  private:
-  std::tuple<Holder<AngleSpring>, Holder<SolidAngleSpring>, Holder<OrientedAngleSpring>> holders_;
-};
-
-/// Tells a generic lambda the kind of spring that it is called for, which is its `type`.
-template <class Spring>
-struct Kind {
-  using type = Spring;
+  detail::KindLoops<Kinds>::Tuple<Holder> holders_;
 };
 
 /// Calls `visit(Kind<Spring>())` for each kind of spring, always in the same order.
+/// \snippet test_headers.cpp kinds
 template <class Visitor>
 void forEachKind(Visitor&& visit) {
-  visit(Kind<AngleSpring>());
-  visit(Kind<SolidAngleSpring>());
-  visit(Kind<OrientedAngleSpring>());
+  detail::KindLoops<Kinds>::forward(visit);
 }
 
 /// Calls `visit(Kind<Spring>())` for each kind of spring, in the opposite order.
 template <class Visitor>
 void forEachKindBackward(Visitor&& visit) {
-  visit(Kind<OrientedAngleSpring>());
-  visit(Kind<SolidAngleSpring>());
-  visit(Kind<AngleSpring>());
+  detail::KindLoops<Kinds>::backward(visit);
 }
 
 /// Springs of one kind.
@@ -63,7 +92,9 @@ struct IdList : std::vector<std::uint32_t> {
   using std::vector<std::uint32_t>::vector;
 };
 
+/// Springs of each kind.
 using SpringLists = PerKind<SpringList>;
+/// Ids of springs of each kind.
 using SpringIds = PerKind<IdList>;
 
 }  // namespace spherical_springs::core

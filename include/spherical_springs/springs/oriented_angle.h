@@ -11,13 +11,15 @@ namespace spherical_springs::core {
 /// Oriented-angle spring (report, section 3.3, an empty heading; section 6 says what it is for):
 /// C = sign * (angle between the first two particles) - rest_angle, where the sign is a smooth step
 /// of width `width` in the triple product of the three particles.
+/// \snippet test_headers.cpp oriented_angle
 struct OrientedAngleSpring {
-  static constexpr std::size_t kParticles = 3;
-  static constexpr std::size_t kCorners = 2;  ///< the first particles: the ends of an arc
+  static constexpr std::size_t kParticles = 3;  ///< that a spring joins
+  static constexpr std::size_t kCorners = 2;    ///< the first particles: the ends of an arc
+  /// The name of the list of such springs in messages and files.
   static constexpr const char* kTable = "oriented_angle_springs";
   static constexpr const char* kName = "oriented-angle spring";  ///< in messages, before an id
 
-  std::array<std::uint32_t, kParticles> particles{};
+  std::array<std::uint32_t, kParticles> particles{};  ///< ids in a scene, indices in a system
   double rest_angle = 0;  ///< [rad]; negative: at rest when seen clockwise
   double stiffness = 0;   ///< [J/rad^2]
   double damping = 0;     ///< [N m s/rad]

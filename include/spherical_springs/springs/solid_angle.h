@@ -12,17 +12,19 @@ namespace spherical_springs::core {
 /// rest_solid_angle, taken modulo 4 pi into [-2 pi, 2 pi], as the area of an oriented triangle is
 /// only defined modulo 4 pi. Positive for vertices counter-clockwise seen from outside (the report
 /// says clockwise, which needs left-handed axes).
+/// \snippet test_headers.cpp solid_angle
 struct SolidAngleSpring {
-  static constexpr std::size_t kParticles = 3;
-  static constexpr std::size_t kCorners = 3;  ///< of a triangle
+  static constexpr std::size_t kParticles = 3;  ///< that a spring joins
+  static constexpr std::size_t kCorners = 3;    ///< of a triangle
+  /// The name of the list of such springs in messages and files.
   static constexpr const char* kTable = "solid_angle_springs";
   static constexpr const char* kName = "solid-angle spring";  ///< in messages, before an id
 
-  std::array<std::uint32_t, kParticles> particles{};
-  double rest_solid_angle = 0;  ///< [sr]
-  double stiffness = 0;         ///< [J/sr^2]
-  double damping = 0;           ///< as for the other springs, with C in [sr]
-  bool at_rest = false;         ///< true: rest_solid_angle is ignored and the present one is taken
+  std::array<std::uint32_t, kParticles> particles{};  ///< ids in a scene, indices in a system
+  double rest_solid_angle = 0;                        ///< [sr]
+  double stiffness = 0;                               ///< [J/sr^2]
+  double damping = 0;                                 ///< as for the other springs, with C in [sr]
+  bool at_rest = false;  ///< true: rest_solid_angle is ignored and the present one is taken
 
   /// Returns the rest value of the condition's quantity [sr].
   double restValue() const { return rest_solid_angle; }
