@@ -3,11 +3,9 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
-#include <stdexcept>
 #include <utility>
 
 #include "node/conversion.h"
-#include "node/faults.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {
@@ -45,43 +43,6 @@ std::size_t springCount(const Message& message) {
   return message.angle_springs.size() + message.solid_angle_springs.size() +
          message.oriented_angle_springs.size();
 }
-
-/// Steps that are undone where what follows them fails.
-class UndoableSteps {
- public:
-  explicit UndoableSteps(core::Runner& runner)
-      : runner_(runner),
-        before_(runner.read([](const core::Simulation& s) { return s.state(); })) {}
-  UndoableSteps(const UndoableSteps&) = delete;
-  UndoableSteps& operator=(const UndoableSteps&) = delete;
-
-  ~UndoableSteps() {
-    if (undoable_)
-      runLoggingFaults("steps of a call that failed could not be undone", [this] { undo(); });
-  }
-
-  std::uint64_t step(std::uint64_t steps) {
-    const std::uint64_t done = runner_.step(steps);
-    revision_ = runner_.read([](const core::Simulation& s) { return s.revision(); });
-    undoable_ = true;
-    return done;
-  }
-  void keep() { undoable_ = false; }
-
- private:
-  void undo() {
-    runner_.change([this](core::Simulation& s) {
-      if (s.revision() != revision_)
-        throw std::runtime_error("another client has changed the scene");
-      s.restore(std::move(before_));
-    });
-  }
-
-  core::Runner& runner_;
-  core::State before_;
-  std::uint64_t revision_ = 0;
-  bool undoable_ = false;
-};
 
 }  // namespace
 
@@ -221,10 +182,7 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
     return;
   }
   const StatusChange told_at_the_end(news_);
-  UndoableSteps steps(runner_);
-  const std::uint64_t done = steps.step(request.steps);
-  report();
-  steps.keep();
+  const std::uint64_t done = runner_.step(request.steps, report);
   response.message = done == request.steps ? "did " : "cancelled after ";
   appendCount(done, "step", response.message);
   if (done == request.steps) return;

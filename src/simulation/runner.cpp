@@ -104,7 +104,7 @@ std::uint64_t Runner::advance(std::uint64_t steps, double wall_time) {
   return done;
 }
 
-std::uint64_t Runner::step(std::uint64_t steps) {
+std::uint64_t Runner::step(std::uint64_t steps, const std::function<void()>& report) {
   const Busy busy(*this, Activity::stepping);
   State before = read([](const Simulation& s) { return s.state(); });
   std::uint64_t done = 0;
@@ -113,14 +113,15 @@ std::uint64_t Runner::step(std::uint64_t steps) {
       const Lock lock(mutex_);
       done += stepForASlice(steps - done);
     }
+    if (done < steps) {
+      const Lock lock(mutex_);
+      simulation_.settle(Points(simulation_.state().positions));
+    }
+    report();
   } catch (...) {
     const Lock lock(mutex_);
     simulation_.restore(std::move(before));
     throw;
-  }
-  if (done < steps) {
-    const Lock lock(mutex_);
-    simulation_.settle(Points(simulation_.state().positions));
   }
   return done;
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -75,9 +76,13 @@ class Runner {
   /// @return how many were done.
   std::uint64_t advance(std::uint64_t steps, double wall_time);
 
-  /// Exactly `steps` steps, unless cancelled.
-  /// @return how many were done. @throw Refusal unless paused and idle.
-  std::uint64_t step(std::uint64_t steps);
+  /// Exactly `steps` steps, unless cancelled; then `report()`, while changes are still refused.
+  /// Where that throws, the steps are undone.
+  /// @return how many were done. @throw Refusal unless paused and idle, and what `report` throws.
+  std::uint64_t step(std::uint64_t steps, const std::function<void()>& report);
+  std::uint64_t step(std::uint64_t steps) {
+    return step(steps, [] {});
+  }
 
   /// @throw Refusal while another is under way, std::invalid_argument for bad options.
   RelaxationResult relax(const RelaxationOptions& options);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <new>
 #include <thread>
 
 #include "simulation/runner.h"
@@ -75,6 +76,48 @@ TEST(Runner, StepsExactlyWhilePausedOnly) {
   EXPECT_EQ(runner.advance(3, 1), 0);
   runner.setRunning(true);
   EXPECT_EQ(runner.advance(3, 1), 3);
+}
+
+// Nobody can change the scene between the steps and their undoing.
+TEST(Runner, UndoesStepsThatCannotBeReportedBeforeAnyoneChangesTheScene) {
+  Runner runner({}, false);
+  fill(runner, testing::randomScene(3, 20, 30));
+  runner.step(3);
+  const State before = runner.snapshot().state;
+  const auto report = [&] {
+    EXPECT_EQ(runner.snapshot().state.steps, 8);
+    EXPECT_NE(runner.snapshot().state.positions, before.positions);
+    EXPECT_THROW(runner.change([](Simulation& s) { s.clear(); }), Refusal);
+    EXPECT_EQ(runner.advance(1, 1), 0);
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW(runner.step(5, report), std::bad_alloc);
+  const State after = runner.snapshot().state;
+  EXPECT_EQ(after.steps, before.steps);
+  EXPECT_EQ(after.time, before.time);
+  EXPECT_EQ(after.positions, before.positions);
+  EXPECT_EQ(after.angular_velocities, before.angular_velocities);
+  runner.change([](Simulation& s) { s.clear(); });
+}
+
+// So are they where the caller has cancelled them, after which the particles are at rest.
+TEST(Runner, UndoesCancelledStepsThatCannotBeReported) {
+  Runner runner({}, false);
+  fill(runner, testing::randomScene(3, 20, 30));
+  runner.step(3);
+  const State before = runner.snapshot().state;
+  auto work = std::async(std::launch::async, [&] {
+    runner.step(~std::uint64_t(0), [&] {
+      EXPECT_TRUE(runner.snapshot().state.angular_velocities.isZero(0));
+      throw std::bad_alloc();
+    });
+  });
+  while (!runner.cancel()) std::this_thread::yield();
+  EXPECT_THROW(work.get(), std::bad_alloc);
+  const State after = runner.snapshot().state;
+  EXPECT_EQ(after.steps, before.steps);
+  EXPECT_EQ(after.positions, before.positions);
+  EXPECT_EQ(after.angular_velocities, before.angular_velocities);
 }
 
 TEST(Runner, GivesTheSameBitsWhateverReadsBeside) {
