@@ -1,6 +1,5 @@
 #include "node/conversion.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace spherical_springs {
@@ -16,40 +15,6 @@ void setVector(const core::Vector3& vector, Message& message) {
   message.x = vector.x();
   message.y = vector.y();
   message.z = vector.z();
-}
-
-/// The fields that springs of all kinds share.
-template <class From, class To>
-void copyCommon(const From& from, To& to) {
-  std::copy(from.particles.begin(), from.particles.end(), to.particles.begin());
-  to.stiffness = from.stiffness;
-  to.damping = from.damping;
-  to.at_rest = from.at_rest;
-}
-
-template <class To, class From>
-To angleSpring(const From& from) {
-  To to;
-  copyCommon(from, to);
-  to.rest_angle = from.rest_angle;
-  return to;
-}
-
-template <class To, class From>
-To solidAngleSpring(const From& from) {
-  To to;
-  copyCommon(from, to);
-  to.rest_solid_angle = from.rest_solid_angle;
-  return to;
-}
-
-template <class To, class From>
-To orientedAngleSpring(const From& from) {
-  To to;
-  copyCommon(from, to);
-  to.rest_angle = from.rest_angle;
-  to.width = from.width;
-  return to;
 }
 
 }  // namespace
@@ -74,31 +39,12 @@ Particle toMessage(const core::Particle& particle) {
   return message;
 }
 
-core::AngleSpring fromMessage(const AngleSpring& message) {
-  return angleSpring<core::AngleSpring>(message);
-}
-AngleSpring toMessage(const core::AngleSpring& spring) { return angleSpring<AngleSpring>(spring); }
-
-core::SolidAngleSpring fromMessage(const SolidAngleSpring& message) {
-  return solidAngleSpring<core::SolidAngleSpring>(message);
-}
-SolidAngleSpring toMessage(const core::SolidAngleSpring& spring) {
-  return solidAngleSpring<SolidAngleSpring>(spring);
-}
-
-core::OrientedAngleSpring fromMessage(const OrientedAngleSpring& message) {
-  return orientedAngleSpring<core::OrientedAngleSpring>(message);
-}
-OrientedAngleSpring toMessage(const core::OrientedAngleSpring& spring) {
-  return orientedAngleSpring<OrientedAngleSpring>(spring);
-}
-
 Energies toMessage(const core::Energies& energies) {
   Energies message;
   message.kinetic = energies.kinetic;
-  message.angle = energies.by_kind.get<core::AngleSpring>().joules;
-  message.solid_angle = energies.by_kind.get<core::SolidAngleSpring>().joules;
-  message.oriented_angle = energies.by_kind.get<core::OrientedAngleSpring>().joules;
+  forEachKindInMessages([&](auto kind) {
+    kind.energy(message) = energies.by_kind.get<typename decltype(kind)::Spring>().joules;
+  });
   message.potential = energies.potential();
   message.total = energies.total();
   message.dissipated = energies.dissipated;

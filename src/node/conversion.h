@@ -2,31 +2,54 @@
 #pragma once
 
 #include <geometry_msgs/Pose.h>
-#include <spherical_springs/AngleSpring.h>
 #include <spherical_springs/Energies.h>
-#include <spherical_springs/OrientedAngleSpring.h>
 #include <spherical_springs/Particle.h>
-#include <spherical_springs/SolidAngleSpring.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "node/kinds.h"
 #include "simulation/runner.h"
 #include "spherical_springs/measures.h"
+#include "spherical_springs/range.h"
 #include "spherical_springs/scene.h"
 
 namespace spherical_springs {
 
 core::Particle fromMessage(const Particle& message);
-core::AngleSpring fromMessage(const AngleSpring& message);
-core::SolidAngleSpring fromMessage(const SolidAngleSpring& message);
-core::OrientedAngleSpring fromMessage(const OrientedAngleSpring& message);
-
 Particle toMessage(const core::Particle& particle);
-AngleSpring toMessage(const core::AngleSpring& spring);
-SolidAngleSpring toMessage(const core::SolidAngleSpring& spring);
-OrientedAngleSpring toMessage(const core::OrientedAngleSpring& spring);
+
+/// Copies a spring of the core's type `Spring` from or to its message.
+template <class Spring, class From, class To>
+void copySpring(const From& from, To& to) {
+  std::copy(from.particles.begin(), from.particles.end(), to.particles.begin());
+  to.at_rest = from.at_rest;
+  std::array<double, sizeof(Spring) / sizeof(double)> values;  // more than there are fields
+  std::size_t count = 0;
+  Spring::visitFields(
+      from, [&](const char*, double value, const core::Range&) { values[count++] = value; });
+  count = 0;
+  Spring::visitFields(
+      to, [&](const char*, double& value, const core::Range&) { value = values[count++]; });
+}
+
+template <class Spring>
+Spring springFrom(const typename KindInMessages<Spring>::Message& message) {
+  Spring spring;
+  copySpring<Spring>(message, spring);
+  return spring;
+}
+
+template <class Spring>
+typename KindInMessages<Spring>::Message toMessage(const Spring& spring) {
+  typename KindInMessages<Spring>::Message message;
+  copySpring<Spring>(spring, message);
+  return message;
+}
 
 /// The header's stamp and frame, and the simulated time, are left to the caller.
 Energies toMessage(const core::Energies& energies);
@@ -46,35 +69,35 @@ auto fromMessages(const std::vector<Message>& messages) {
   return items;
 }
 
-/// The three arrays of springs, and of their ids, that requests and responses have in common.
-template <class Message>
-core::SpringLists springsFrom(const Message& message) {
+/// The springs of all kinds that a request holds.
+template <class Request>
+core::SpringLists springsFrom(const Request& request) {
   core::SpringLists springs;
-  const auto fill = [](auto& list, const auto& messages) {
-    list.reserve(messages.size());
-    for (const auto& item : messages) list.push_back(fromMessage(item));
-  };
-  fill(springs.get<core::AngleSpring>(), message.angle_springs);
-  fill(springs.get<core::SolidAngleSpring>(), message.solid_angle_springs);
-  fill(springs.get<core::OrientedAngleSpring>(), message.oriented_angle_springs);
+  forEachKindInMessages([&](auto kind) {
+    using Spring = typename decltype(kind)::Spring;
+    auto& list = springs.get<Spring>();
+    list.reserve(kind.springs(request).size());
+    for (const auto& message : kind.springs(request)) list.push_back(springFrom<Spring>(message));
+  });
   return springs;
 }
 
-template <class Message>
-core::SpringIds springIdsFrom(const Message& message) {
+/// The ids of springs of all kinds that a request holds.
+template <class Request>
+core::SpringIds springIdsFrom(const Request& request) {
   core::SpringIds ids;
-  const auto fill = [](auto& list, const auto& from) { list.assign(from.begin(), from.end()); };
-  fill(ids.get<core::AngleSpring>(), message.angle_spring_ids);
-  fill(ids.get<core::SolidAngleSpring>(), message.solid_angle_spring_ids);
-  fill(ids.get<core::OrientedAngleSpring>(), message.oriented_angle_spring_ids);
+  forEachKindInMessages([&](auto kind) {
+    const auto& from = kind.ids(request);
+    ids.get<typename decltype(kind)::Spring>().assign(from.begin(), from.end());
+  });
   return ids;
 }
 
-template <class Message>
-void setSpringIds(core::SpringIds&& ids, Message& message) noexcept {
-  message.angle_spring_ids = std::move(ids.get<core::AngleSpring>());
-  message.solid_angle_spring_ids = std::move(ids.get<core::SolidAngleSpring>());
-  message.oriented_angle_spring_ids = std::move(ids.get<core::OrientedAngleSpring>());
+template <class Response>
+void setSpringIds(core::SpringIds&& ids, Response& response) noexcept {
+  forEachKindInMessages([&](auto kind) {
+    kind.ids(response) = std::move(ids.get<typename decltype(kind)::Spring>());
+  });
 }
 
 }  // namespace spherical_springs

@@ -2,6 +2,8 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 
+#include "node/kinds.h"
+
 namespace spherical_springs {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -39,9 +41,9 @@ void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
   wrapper.add("time [s]", status.time);
   wrapper.add("steps", status.steps);
   wrapper.add("particles", status.particles);
-  wrapper.add("angle springs", status.angle_springs);
-  wrapper.add("solid-angle springs", status.solid_angle_springs);
-  wrapper.add("oriented-angle springs", status.oriented_angle_springs);
+  forEachKindInMessages([&](auto kind) {
+    wrapper.add(std::string(decltype(kind)::Spring::kName) + "s", kind.count(status));
+  });
   wrapper.add("state", status.state);
   wrapper.add("integrator", status.integrator);
   wrapper.add("time step [s]", status.time_step);

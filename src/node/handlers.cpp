@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "node/conversion.h"
+#include "node/kinds.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {
@@ -36,12 +37,6 @@ std::string counted(std::uint64_t count, const char* what) {
 
 double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-template <class Message>
-std::size_t springCount(const Message& message) {
-  return message.angle_springs.size() + message.solid_angle_springs.size() +
-         message.oriented_angle_springs.size();
 }
 
 }  // namespace
@@ -78,9 +73,8 @@ void Handlers::removeParticles(const RemoveParticles::Request& request,
 void Handlers::addSprings(const AddSprings::Request& request, Answer<AddSprings>& answer) {
   auto& response = answer.response;
   auto springs = springsFrom(request);
-  response.angle_spring_ids.resize(request.angle_springs.size());
-  response.solid_angle_spring_ids.resize(request.solid_angle_springs.size());
-  response.oriented_angle_spring_ids.resize(request.oriented_angle_springs.size());
+  forEachKindInMessages(
+      [&](auto kind) { kind.ids(response).resize(kind.springs(request).size()); });
   response.message = "added " + counted(springCount(request), "spring");
   answer.reserve();
   runner_.change(
@@ -97,10 +91,7 @@ void Handlers::setSprings(const SetSprings::Request& request, Answer<SetSprings>
 
 void Handlers::removeSprings(const RemoveSprings::Request& request, Answer<RemoveSprings>& answer) {
   const auto ids = springIdsFrom(request);
-  const std::size_t count = request.angle_spring_ids.size() +
-                            request.solid_angle_spring_ids.size() +
-                            request.oriented_angle_spring_ids.size();
-  answer.response.message = "removed " + counted(count, "spring");
+  answer.response.message = "removed " + counted(springIdCount(request), "spring");
   answer.reserve();
   runner_.change([&](core::Simulation& s) { s.removeSprings(ids); });
 }
@@ -115,11 +106,10 @@ void Handlers::getScene(const GetScene::Request&, Answer<GetScene>& answer) {
     for (const auto& item : table.items()) messages.push_back(toMessage(item));
   };
   fill(scene.particles(), response.particle_ids, response.particles);
-  fill(scene.springs<core::AngleSpring>(), response.angle_spring_ids, response.angle_springs);
-  fill(scene.springs<core::SolidAngleSpring>(), response.solid_angle_spring_ids,
-       response.solid_angle_springs);
-  fill(scene.springs<core::OrientedAngleSpring>(), response.oriented_angle_spring_ids,
-       response.oriented_angle_springs);
+  forEachKindInMessages([&](auto kind) {
+    fill(scene.springs<typename decltype(kind)::Spring>(), kind.ids(response),
+         kind.springs(response));
+  });
 }
 
 void Handlers::loadScene(const LoadScene::Request& request, Answer<LoadScene>& answer) {

@@ -4,6 +4,7 @@
 
 #include "node/conversion.h"
 #include "node/faults.h"
+#include "node/kinds.h"
 #include "node/poses.h"
 #include "spherical_springs/measures.h"
 
@@ -96,9 +97,9 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.time = state.time;
   message.steps = state.steps;
   message.particles = system.particleCount();
-  message.angle_springs = system.springs<core::AngleSpring>().size();
-  message.solid_angle_springs = system.springs<core::SolidAngleSpring>().size();
-  message.oriented_angle_springs = system.springs<core::OrientedAngleSpring>().size();
+  forEachKindInMessages([&](auto kind) {
+    kind.count(message) = system.springs<typename decltype(kind)::Spring>().size();
+  });
   message.state = nameOf(snapshot);
   message.integrator = parameters_.integrator;
   message.time_step = parameters_.time_step;

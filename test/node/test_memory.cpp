@@ -201,19 +201,15 @@ std::vector<Spring> someSprings() {
 template <class Request>
 Request withSprings() {
   Request request;
-  request.angle_springs = someSprings<AngleSpring>();
-  request.solid_angle_springs = someSprings<SolidAngleSpring>();
-  request.oriented_angle_springs = someSprings<OrientedAngleSpring>();
+  forEachKindInMessages(
+      [&](auto kind) { kind.springs(request) = someSprings<typename decltype(kind)::Message>(); });
   request.oriented_angle_springs[0].width = request.oriented_angle_springs[1].width = 0.1;
   return request;
 }
 
 template <class Request>
 Request withSpringIds(Request request) {
-  for (auto* ids : {&request.angle_spring_ids, &request.solid_angle_spring_ids,
-                    &request.oriented_angle_spring_ids}) {
-    *ids = {0, 3};
-  }
+  forEachKindInMessages([&](auto kind) { kind.ids(request) = {0, 3}; });
   return request;
 }
 
