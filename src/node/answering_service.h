@@ -43,8 +43,7 @@ class AnsweringService : public ros::ServiceCallbackHelper {
 
  private:
   ros::SerializedMessage answer(const ros::SerializedMessage& bytes) const {
-    typename Service::Request request;
-    RequestStream(bytes, limits_).next(request);
+    const auto request = readRequest<typename Service::Request>(bytes, limits_);
     Answer<Service> answer;
     handle_(request, answer);
     return answer.serialized(true);

@@ -29,8 +29,9 @@ class RequestStream : public ros::serialization::IStream {
     std::uint32_t count = 0;
     IStream peek(getData(), getLength());
     peek.next(count);
-    require<Item>(count, most<Item>());
-    require<Item>(count, peek.getLength() / ros::serialization::serializationLength(Item()));
+    require<Item>(count, most<Item>(), "");
+    require<Item>(count, peek.getLength() / ros::serialization::serializationLength(Item()),
+                  ", as many as its bytes can hold");
     ros::serialization::deserialize(*this, items);
   }
 
@@ -50,17 +51,36 @@ class RequestStream : public ros::serialization::IStream {
   }
 
   template <class Item>
-  static void require(std::size_t count, std::size_t allowed) {
+  static void require(std::size_t count, std::size_t allowed, const char* why) {
     if (count <= allowed) return;
     std::string items = "ids";
     if constexpr (ros::message_traits::IsMessage<Item>::value) {
       items = std::is_same_v<Item, Particle> ? "particles" : "springs";
     }
     throw std::invalid_argument(items + " in the request are " + std::to_string(count) +
-                                "; allowed here: at most " + std::to_string(allowed));
+                                "; allowed here: at most " + std::to_string(allowed) + why);
   }
 
   const core::SceneLimits limits_;
 };
+
+/// Returns the request that a service has got.
+/// @throw std::invalid_argument for an array that is too long, and where bytes are missing.
+template <class Request>
+Request readRequest(const ros::SerializedMessage& message, const core::SceneLimits& limits) {
+  RequestStream stream(message, limits);
+  const std::uint32_t size = stream.getLength();
+  Request request;
+  try {
+    stream.next(request);
+  } catch (const ros::serialization::StreamOverrunException&) {
+    throw std::invalid_argument(
+        "the request ended too early: its " + std::to_string(size) + " byte" +
+        (size == 1 ? " is" : "s are") + " fewer than " +
+        ros::message_traits::DataType<Request>::value() +
+        " needs; the client may have been built for another version of the package");
+  }
+  return request;
+}
 
 }  // namespace spherical_springs

@@ -2,7 +2,10 @@
 #include <spherical_springs/AddSprings.h>
 
 #include <random>
+#include <stdexcept>
+#include <string>
 
+#include "node/kinds.h"
 #include "node/request_stream.h"
 
 namespace spherical_springs {
@@ -11,9 +14,7 @@ namespace {
 /// Three springs of each kind.
 ros::SerializedMessage message() {
   AddSprings::Request request;
-  request.angle_springs.resize(3);
-  request.solid_angle_springs.resize(3);
-  request.oriented_angle_springs.resize(3);
+  forEachKindInMessages([&](auto kind) { kind.springs(request).resize(3); });
   request.oriented_angle_springs[2].stiffness = 5;
   // As it comes to a service, without the length before it.
   auto whole = ros::serialization::serializeMessage(request);
@@ -24,9 +25,7 @@ AddSprings::Request read(ros::SerializedMessage bytes, std::size_t begin, std::s
                          const core::SceneLimits& limits = {}) {
   bytes.message_start = bytes.buf.get() + begin;
   bytes.num_bytes = end;
-  AddSprings::Request request;
-  RequestStream(bytes, limits).next(request);
-  return request;
+  return readRequest<AddSprings::Request>(bytes, limits);
 }
 
 constexpr std::size_t kLengthBytes = 4;  // before a message
@@ -41,6 +40,25 @@ TEST(RequestStream, RefusesWhatIsCutOffAnywhere) {
   for (std::size_t end = kLengthBytes; end < message().num_bytes; ++end) {
     EXPECT_THROW(read(message(), kLengthBytes, end), std::exception) << end;
   }
+}
+
+std::string reasonAgainst(std::size_t bytes) {
+  try {
+    read(message(), kLengthBytes, kLengthBytes + bytes);
+  } catch (const std::invalid_argument& fault) {
+    return fault.what();
+  }
+  return "taken";
+}
+
+TEST(RequestStream, SaysThatARequestEndsTooEarly) {
+  const std::string rest =
+      " fewer than spherical_springs/AddSpringsRequest needs; the client may have been built for "
+      "another version of the package";
+  EXPECT_EQ(reasonAgainst(0), "the request ended too early: its 0 bytes are" + rest);
+  EXPECT_EQ(reasonAgainst(1), "the request ended too early: its 1 byte is" + rest);
+  EXPECT_EQ(reasonAgainst(10),
+            "springs in the request are 3; allowed here: at most 0, as many as its bytes can hold");
 }
 
 TEST(RequestStream, RefusesMoreThanTheLimits) {
@@ -60,9 +78,7 @@ TEST(RequestStream, TakesNoMoreItemsThanBytesWhateverComes) {
     try {
       const auto request = read(bytes, kLengthBytes, bytes.num_bytes);
       ++read_whole;
-      EXPECT_LE(request.angle_springs.size() + request.solid_angle_springs.size() +
-                    request.oriented_angle_springs.size(),
-                bytes.num_bytes / 33);
+      EXPECT_LE(springCount(request), bytes.num_bytes / 33);
     } catch (const std::exception&) {
       // Refused.
     }

@@ -63,6 +63,9 @@ class TestLargeRequests(unittest.TestCase):
                 ('set_springs', claim(SetSpringsRequest, 0, 1000000000))):
             self.assert_refused('in the request are .*; allowed', service, request)
         self.assertLess(self.memory('VmHWM') - before, 50 * MEGABYTE)
+        for service, request in (('add_particles', claim(AddParticlesRequest)),
+                                 ('add_springs', claim(AddSpringsRequest, 0, 0))):
+            self.assert_refused('ended too early: its [08] bytes', service, request)
 
     def test_beyond_the_limits(self):
         self.start(max_particles=1000, max_springs=1000)
