@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 
 #include "spherical_springs/range.h"
 #include "stepping/evaluation.h"
@@ -86,6 +89,16 @@ bool blownUp(const Measures& measures, IntegrationMethod method, const System& s
          now.total() > kRounding * system.largestStiffness();
 }
 
+/// Returns a share in percent with two significant digits, below 1e6 % without an exponent.
+std::string percentOf(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", 100 * share);
+  const double percent = std::strtod(text, nullptr);
+  if (!(percent < 1e6)) return toText(percent);
+  std::snprintf(text, sizeof text, "%.0f", percent);
+  return text;
+}
+
 std::string warningOf(const Measures& measures, double time_step, const State& state) {
   if (state.unconverged_steps > 0) {
     return std::to_string(state.unconverged_steps) +
@@ -93,7 +106,7 @@ std::string warningOf(const Measures& measures, double time_step, const State& s
            "without area stopped them: they are sound, but less exact";
   }
   if (measures.blown_up) {
-    return "the energy is off by " + toText(std::round(100 * measures.energy_error)) +
+    return "the energy is off by " + percentOf(measures.energy_error) +
            " % since the account began: the time step of " + toText(time_step) +
            " s is too long for this scene (stable here: " + toText(measures.stable_time_step) +
            " s)";

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spherical_springs/relaxation.h"
@@ -245,6 +246,23 @@ TEST(Measures, WarnBeforeAnyoneHasToWonder) {
   EXPECT_NE(warning(10, start.state).find("above the stable one"), std::string::npos);
   const Trajectory blown_up(scene, "verlet", 10, 100);
   EXPECT_NE(warning(10, blown_up.state).find("the energy is off"), std::string::npos);
+}
+
+TEST(Measures, TellHowFarTheEnergyIsOffInPlainNumbers) {
+  const Scene scene = testing::randomScene(1, 8, 10);
+  const Trajectory start(scene, "verlet", 1e-4, 0);
+  Account account(*start.plan, start.state);
+  const double total = energies(*start.plan, start.state).total();
+  for (const auto& [share, text] :
+       {std::pair(0.123, "12"), std::pair(1., "100"), std::pair(0.996, "100"),
+        std::pair(123.4, "12000"), std::pair(9.94e3, "990000"), std::pair(2e4, "2e+06")}) {
+    State state = start.state;
+    state.dissipated = share * total;
+    EXPECT_EQ(measure(start.plan, IntegrationMethod::verlet, 1e-4, state, account)
+                  .warning.rfind(std::string("the energy is off by ") + text + " % since", 0),
+              0)
+        << text;
+  }
 }
 
 }  // namespace
