@@ -70,8 +70,10 @@ Eigen::Vector3i parseFace(std::size_t line, const char* text, std::size_t vertic
     while (*text != '\0' && !isBlank(*text)) ++text;
   }
   if (corners != kCorners) {
-    refuse(line, "a face has " + std::to_string(corners) +
-                     " corners; allowed: 3, so cut it into triangles first");
+    const char* advice =
+        corners < kCorners ? "which a face needs" : "so cut it into triangles first";
+    refuse(line, "a face has " + std::to_string(corners) + (corners == 1 ? " corner" : " corners") +
+                     "; allowed: 3, " + advice);
   }
   return face;
 }

@@ -104,9 +104,9 @@ std::vector<std::size_t> indicesOf(const IdTable<Item>& table, const Ids& ids,
 inline void requireSameLength(const std::string& ids, std::size_t id_count,
                               const std::string& items, std::size_t item_count) {
   if (id_count == item_count) return;
-  throw std::invalid_argument(ids + " has " + std::to_string(id_count) + " items and " + items +
-                              " has " + std::to_string(item_count) +
-                              "; allowed: as many of one as of the other");
+  throw std::invalid_argument(
+      ids + " has " + std::to_string(id_count) + (id_count == 1 ? " item" : " items") + " and " +
+      items + " has " + std::to_string(item_count) + "; allowed: as many of one as of the other");
 }
 
 inline void requireRoom(const std::string& what, std::size_t present, std::size_t added,

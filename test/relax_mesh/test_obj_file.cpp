@@ -103,8 +103,8 @@ TEST(ObjFile, RefusesWhatIsNoFace) {
   EXPECT_EQ("line 4: a face has vertex 4; allowed: 1 to 3", reason("f 1 2 4"));
   EXPECT_NE("taken", reason("f 1 2 99999999999999999999"));
   EXPECT_NE("taken", reason("f 1 2 -99999999999999999999"));
-  EXPECT_EQ("line 4: a face has 2 corners; allowed: 3, so cut it into triangles first",
-            reason("f 1 2"));
+  EXPECT_EQ("line 4: a face has 1 corner; allowed: 3, which a face needs", reason("f 1"));
+  EXPECT_EQ("line 4: a face has 2 corners; allowed: 3, which a face needs", reason("f 1 2"));
   EXPECT_EQ("line 4: a face has 4 corners; allowed: 3, so cut it into triangles first",
             reason("f 1 2 3 1"));
 }

@@ -223,6 +223,8 @@ TEST(SceneRefuses, BadIds) {
               scene.setParticles({0, 1}, {particle});
             }),
             "ids has 2 items and particles has 1; allowed: as many of one as of the other");
+  EXPECT_EQ(refusal([&] { scene.setParticles({0}, {}); }),
+            "ids has 1 item and particles has 0; allowed: as many of one as of the other");
   EXPECT_EQ(scene.particles().size(), 3);
 
   SpringIds ids;
