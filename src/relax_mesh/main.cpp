@@ -108,6 +108,12 @@ void warn(const std::string& text) {
   std::cerr << "warning: " << core::onOneLine(text) << std::endl;
 }
 
+void printWordsOf(const SpringsNode& node) {
+  for (const std::string& line : node.said()) {
+    std::cout << node.name() << ": " << core::onOneLine(line) << std::endl;
+  }
+}
+
 /// Lets the node relax a map that has been written. Returns nothing where that fails, after a
 /// warning that says why.
 std::optional<Points> relaxed(SpringsNode& node, const Network& network, double max_time) {
@@ -115,6 +121,7 @@ std::optional<Points> relaxed(SpringsNode& node, const Network& network, double 
   try {
     return node.relax(network, max_time);
   } catch (const Interrupted& fault) {
+    printWordsOf(node);
     throw std::runtime_error(fault.what() + consequence);
   } catch (const std::bad_alloc&) {
     warn(kNoMemory + consequence);
@@ -184,6 +191,7 @@ void run(const Options& options) {
     }
   }
   print("after", faces, secondsSince(begin));
+  printWordsOf(node);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "node/kinds.h"
 #include "relax_mesh/interruption.h"
 #include "relax_mesh/progress_line.h"
 #include "relax_mesh/service_call.h"
@@ -140,8 +141,7 @@ void SpringsNode::look() {
   link_ = ros::NodeHandle().serviceClient<GetScene>(name_ + "/get_scene", kPersistent);
   const auto scene = call<GetScene>("get_scene");
   known_ = scene.particle_ids;
-  known_springs_ = scene.angle_spring_ids.size() + scene.solid_angle_spring_ids.size() +
-                   scene.oriented_angle_spring_ids.size();
+  known_springs_ = springIdCount(scene);
   const std::string state = stateOf(name_);
   was_running_ = state == "running";
   was_busy_ = state == "relaxing";
@@ -186,7 +186,7 @@ Points SpringsNode::relaxOnce(const Network& network, double max_time) {
     return callService<Relax>(name_ + "/relax", request, patience);
   }();
   throwIfInterrupted();
-  std::cout << name_ << ": " << relaxed.message << std::endl;
+  said_.push_back(relaxed.message);
   return positionsOf(own);
 }
 
@@ -229,7 +229,7 @@ Ids SpringsNode::replaceScene(const Network& network) {
 
 /// Removes the particles of all others. Where two clients add to the scene at once, the one who was
 /// first has the lower ids, and waits until the other has withdrawn.
-void SpringsNode::removeOthers(const Ids& own) const {
+void SpringsNode::removeOthers(const Ids& own) {
   constexpr double kWithdrawal = 5;  // [s]
   const Deadline deadline(kWithdrawal);
   RemoveParticles::Request request;
@@ -242,8 +242,7 @@ void SpringsNode::removeOthers(const Ids& own) const {
     kBetweenLooks.sleep();
   }
   if (request.ids.empty()) return;
-  std::cout << name_ << ": " << call<RemoveParticles>("remove_particles", request).message
-            << std::endl;
+  said_.push_back(call<RemoveParticles>("remove_particles", request).message);
 }
 
 /// Takes the network off the scene again if it is not all that is left of it. While the other

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "relax_mesh/network.h"
 
@@ -28,6 +29,9 @@ class SpringsNode {
   explicit SpringsNode(const std::string& name);
 
   const std::string& name() const { return name_; }
+
+  /// Returns the lines in which the node has said what it did with its scene and the network.
+  const std::vector<std::string>& said() const { return said_; }
 
   /// Whether the node relaxed for another client when it was looked at.
   bool wasBusy() const { return was_busy_; }
@@ -54,10 +58,11 @@ class SpringsNode {
   Points relaxOnce(const Network& network, double max_time);
   Points positionsOf(const Ids& own) const;
   Ids replaceScene(const Network& network);
-  void removeOthers(const Ids& own) const;
+  void removeOthers(const Ids& own);
   void withdraw(const Ids& own) const;
 
   const std::string name_;
+  std::vector<std::string> said_;
   double patience_ = 30;     // for an answer that takes no work [s]
   ros::ServiceClient link_;  // breaks when the node that was looked at ends
   Ids known_;                // of the particles of the scene that may be replaced

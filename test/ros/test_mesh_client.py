@@ -211,7 +211,9 @@ class TestNode(MeshTest):
         self.node.set_running(True)
         vertices, faces = bumpy(1)
         outcome = self.run_to_success(mesh=self.write('surface.obj', vertices, faces))
-        self.assertIn('removed 2 particles and 0 springs', outcome.output)
+        # The two lines of figures stand together, before the words of the node.
+        self.assertRegex(outcome.output, r'^before: .*\nafter: .*\n'
+                         r'(/\S+): removed 2 particles and 0 springs\n\1: .+\n$')
         scene = self.node.get_scene()
         self.assertEqual(len(vertices), len(scene.particles))
         self.assertEqual(len(faces), len(scene.solid_angle_springs))
