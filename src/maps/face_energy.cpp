@@ -5,38 +5,20 @@
 #include <limits>
 
 #include "maps/coverage.h"
+#include "maps/face_cost.h"
 #include "spherical_springs/springs/solid_angle.h"
 
 namespace spherical_springs::mesh {
 namespace {
 
-/// A function of the area and of the corners' distances with its derivatives.
-struct Cost {
-  double value, slope, bend;
-};
-
-/// Returns the cost and its derivatives by the area.
-Cost areaCost(AreaCost cost, double area, double share) {
-  const double r = area / share;
-  if (cost == AreaCost::square) {
-    return {0.5 * (r - 1) * (r - 1), (r - 1) / share, 1 / (share * share)};
-  }
-  return {0.5 * (r - 1) * (r - 1) / r, 0.5 * (1 - 1 / (r * r)) / share,
-          1 / (r * r * r) / (share * share)};
+Cost<double> areaCost(AreaCost cost, double area, double share) {
+  return cost == AreaCost::square ? squareCost(area, 1 / share) : barrierCost(area, 1 / share);
 }
 
-/// tan^2(area / 4), by the area.
-Cost halfSphereCost(double area) {
-  const double t = std::tan(area / 4), t2 = t * t;
-  return {t2, 0.5 * t * (1 + t2), (1 + t2) * (1 + 3 * t2) / 8};
-}
+Cost<double> halfSphereCostOf(double area) { return halfSphereCost(std::tan(area / 4)); }
 
-/// tan^2(edge / 2) / sqrt 3, by the cosine of the edge.
-Cost edgeCost(const Vector3& a, const Vector3& b) {
-  const double scale = 1 / std::sqrt(3.);
-  const double sum = 0.5 * (a + b).squaredNorm();  // 1 + cosine
-  return {scale * 0.5 * (a - b).squaredNorm() / sum, -2 * scale / (sum * sum),
-          4 * scale / (sum * sum * sum)};
+Cost<double> edgeCostOf(const Vector3& a, const Vector3& b) {
+  return edgeCost((a - b).squaredNorm(), 2 / (a + b).squaredNorm());
 }
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -59,8 +41,8 @@ double FaceEnergy::value(const Corners& corners, double area) const {
   double sum = areaCost(cost, area, share).value;
   if (shape > 0) {
     sum += shape / share *
-           (halfSphereCost(area).value + edgeCost(a, b).value + edgeCost(b, c).value +
-            edgeCost(c, a).value);
+           (halfSphereCostOf(area).value + edgeCostOf(a, b).value + edgeCostOf(b, c).value +
+            edgeCostOf(c, a).value);
   }
   return weight * sum;
 }
@@ -70,9 +52,9 @@ FaceEnergy::Terms FaceEnergy::terms(const Corners& corners, const Frames& frames
   const auto curvature =
       hessian == FaceHessian::gauss_newton ? core::Curvature::definite : core::Curvature::exact;
   const auto area = core::tangentCondition(core::SolidAngleSpring(), corners, frames, curvature);
-  Cost of_area = areaCost(cost, area.value, share);
+  Cost<double> of_area = areaCost(cost, area.value, share);
   if (shape > 0) {
-    const Cost half_sphere = halfSphereCost(area.value);
+    const Cost<double> half_sphere = halfSphereCostOf(area.value);
     of_area.value += shape / share * half_sphere.value;
     of_area.slope += shape / share * half_sphere.slope;
     of_area.bend += shape / share * half_sphere.bend;
@@ -98,7 +80,7 @@ void FaceEnergy::addEdges(const Corners& corners, const Frames& frames, Terms& t
   const double scale = weight * shape / share;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
-    const Cost of_edge = edgeCost(corners[i], corners[j]);
+    const Cost<double> of_edge = edgeCostOf(corners[i], corners[j]);
     const Eigen::Vector2d g_i = frames[i].transpose() * corners[j];
     const Eigen::Vector2d g_j = frames[j].transpose() * corners[i];
     const double slope = scale * of_edge.slope, bend = scale * of_edge.bend;

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "base/checkpoint.h"
+#include "geometry/tangent_place.h"
 #include "linear/block_matrix.h"
 #include "maps/face_energy.h"
+#include "maps/face_kernels.h"
 
 namespace spherical_springs::mesh {
 
@@ -46,9 +48,9 @@ class MapEnergy {
   void writePoints(Points& points) const;  ///< over others; takes no memory
 
   /// The energy that vertices would have after a step along their tangent planes.
-  double valueAfter(const Eigen::VectorXd& step) const;
+  double valueAfter(const Eigen::VectorXd& step);
   void move(const Eigen::VectorXd& step);
-  double valueHere() const { return valueAt(points_); }  ///< without `evaluate`
+  double valueHere() const { return valueAt(rowsHere()); }  ///< without `evaluate`
 
   /// Moves each vertex by a Newton step of its own that lowers the energy, those before it being
   /// where they are now (Gauss and Seidel). Cures what a few vertices can cure among themselves,
@@ -60,7 +62,6 @@ class MapEnergy {
   double value() const { return value_; }
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
-  const std::vector<core::TangentFrame>& frames() const { return frames_; }
 
   /// Sum over the faces of each vertex of weight / share.
   const Eigen::VectorXd& mass() const { return mass_; }
@@ -69,20 +70,32 @@ class MapEnergy {
   double spread() const;
 
  private:
-  Eigen::ArrayXd areas(const std::vector<Vector3>& points) const;
-  double valueAt(const std::vector<Vector3>& points) const;
+  /// A unit vector, padded for kernels.
+  struct PaddedPoint {
+    Vector3 point;
+    double padding;
+  };
+
+  PointRows rowsHere() const { return {places_.front().point.data(), core::kPlaceSize}; }
+  Eigen::ArrayXd areas() const;
+  double valueAt(const PointRows& points) const;
+  Vector3 moved(std::size_t n, const Eigen::VectorXd& step) const;
+  void layOutCorners();
+  FaceLists faceLists() const;
+  RingLists ringLists() const;
   FaceEnergy faceEnergy(Eigen::Index face) const {
     return {shares_[face], weights_[face], shape_, cost_};
   }
-  FaceEnergy::Corners corners(Eigen::Index face) const;
+  FaceEnergy::Corners corners(Eigen::Index face, const PointRows& points) const;
   FaceEnergy::Terms terms(Eigen::Index face, FaceHessian hessian) const;
-  Eigen::Vector2d ownStep(std::size_t n) const;
+  double evaluateFaces(std::uint32_t begin, std::uint32_t end, FaceHessian hessian);
+  void gatherRow(std::size_t n);
+  RingTerms ownTerms(std::size_t n) const;
   double ownValue(std::size_t n, const Vector3& point) const;
   void moveAlone(std::size_t n);
   void moveEachAlone();
-  void put(std::vector<Vector3> points);
-  std::vector<Vector3> moved(const Eigen::VectorXd& step) const;
 
+  const FaceKernels& kernels_ = faceKernels();
   int threads_;
   core::Checkpoint checkpoint_;
   std::int32_t free_;
@@ -91,14 +104,17 @@ class MapEnergy {
   AreaCost cost_ = AreaCost::barrier;
   std::vector<std::uint32_t> vertices_;  // of the mesh, by number here
   Faces faces_;                          // of numbers
-  Eigen::VectorXd shares_, weights_, mass_;
+  Eigen::VectorXd shares_, mass_;
+  std::vector<double> weights_, over_shares_;  // one a face, with padding
   core::BlockPattern pattern_;
   core::BlockOrder order_;                             // of sweeps
   std::vector<std::uint32_t> first_corner_, corners_;  // 3 face + corner, of each vertex
-  std::vector<std::array<std::uint32_t, 3>> places_;   // of each of those with the face's corners
-  std::vector<Vector3> points_;
-  std::vector<core::TangentFrame> frames_;
-  std::vector<FaceEnergy::Terms> terms_;
+  std::vector<std::array<std::uint32_t, 3>> blocks_;   // of each of those with the face's corners
+  std::vector<std::int32_t> next_, last_;  // corners of the face, of each corner of a vertex
+  std::vector<double> corner_weights_, corner_over_shares_;  // with padding
+  std::vector<core::TangentPlace> places_;
+  std::vector<PaddedPoint> trial_;
+  std::vector<FaceTerms> terms_;
   double value_ = 0;
   Eigen::VectorXd gradient_;
   Hessian hessian_;

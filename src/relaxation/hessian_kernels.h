@@ -33,8 +33,6 @@ struct SpringFields {
 struct HessianArrays {
   static constexpr std::uint32_t kNotStored = ~0u;
 
-  static constexpr std::size_t kPlaceSize = 10;
-
   const double* places;      ///< kPlaceSize a particle: tangent vectors x, y, its unit vector
   std::uint32_t free_count;  ///< particles below it have a gradient
   double* gradient;          ///< 2 a free particle

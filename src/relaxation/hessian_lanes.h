@@ -2,57 +2,13 @@
 // is compiled for. The formulas are those of src/springs, for angles that are not large.
 #pragma once
 
-#include "base/lanes.h"
 #include "relaxation/hessian_kernels.h"
+#include "springs/triangle_lanes.h"
 
 namespace {
 
 using spherical_springs::core::HessianArrays;
 using spherical_springs::core::SpringFields;
-
-/// Two tangent coordinates.
-struct Lanes2 {
-  Lanes x, y;
-};
-
-inline Lanes2 operator+(const Lanes2& a, const Lanes2& b) { return {a.x + b.x, a.y + b.y}; }
-inline Lanes2 operator*(const Lanes& s, const Lanes2& a) { return {s * a.x, s * a.y}; }
-
-struct LaneBlock {
-  Lanes xx, yx, xy, yy;  // by columns
-};
-
-inline LaneBlock operator+(const LaneBlock& a, const LaneBlock& b) {
-  return {a.xx + b.xx, a.yx + b.yx, a.xy + b.xy, a.yy + b.yy};
-}
-inline LaneBlock outer(const Lanes2& a, const Lanes2& b) {
-  return {a.x * b.x, a.y * b.x, a.x * b.y, a.y * b.y};
-}
-
-struct LaneFrame {
-  Lanes3 point, x, y;
-
-  /// Tangent coordinates of a vector.
-  Lanes2 coordinates(const Lanes3& v) const { return {dot(x, v), dot(y, v)}; }
-};
-
-/// Four successive numbers of the place of each lane, one Lanes for each of the four.
-inline void gather(const double* first, const std::uint32_t* rows, Lanes* const (&fields)[4]) {
-  for (int part = 0; part < kLanes / 4; ++part) {
-    Four numbers[4];
-    for (int k = 0; k < 4; ++k) {
-      numbers[k] = loadFour(first + HessianArrays::kPlaceSize * rows[4 * part + k]);
-    }
-    transpose(numbers);
-    for (int k = 0; k < 4; ++k) setFour(numbers[k], part, *fields[k]);
-  }
-}
-
-inline void gather(const double* places, const std::uint32_t* rows, LaneFrame& end) {
-  gather(places, rows, {&end.x.x, &end.x.y, &end.x.z, &end.y.x});
-  gather(places + 4, rows, {&end.y.y, &end.y.z, &end.point.x, &end.point.y});
-  for (int k = 0; k < kLanes; ++k) end.point.z[k] = places[HessianArrays::kPlaceSize * rows[k] + 8];
-}
 
 /// The ends of kLanes springs from `first` on, and what belongs to them.
 template <std::size_t N>
@@ -144,19 +100,6 @@ inline bool addArcs(const SpringFields<2>& springs, std::uint32_t first,
   return true;
 }
 
-/// frame_a^T (b [c]_x + a I) frame_b for scalars a and b.
-inline LaneBlock mixed(const LaneFrame& a, const LaneFrame& b, const Lanes3& c, const Lanes& beta,
-                       const Lanes& alpha) {
-  const Lanes3 cx = beta * cross(c, b.x) + alpha * b.x;
-  const Lanes3 cy = beta * cross(c, b.y) + alpha * b.y;
-  const Lanes2 first = a.coordinates(cx), second = a.coordinates(cy);
-  return {first.x, first.y, second.x, second.y};
-}
-
-inline LaneBlock scaled(const Lanes& factor, const LaneBlock& b) {
-  return {factor * b.xx, factor * b.yx, factor * b.xy, factor * b.yy};
-}
-
 /// Adds energies, gradients and Hessians of triangles.
 inline bool addTriangles(const SpringFields<3>& springs, std::uint32_t first,
                          const HessianArrays& arrays, Lanes& energy) {
@@ -176,40 +119,23 @@ inline bool addTriangles(const SpringFields<3>& springs, std::uint32_t first,
   energy += 0.5 * s.stiffness * r * r;
 
   const Lanes over = 1 / (denominator * (1 + square));
-  const Lanes beta = over, alpha = u * over;  // both divided by their squared norm
-  const Lanes3 sides[3] = {bc, ca, ab};       // opposite of each vertex
-  Lanes2 us[3], vs[3];
-  Lanes radial[3];
+  const Lanes beta = over, alpha = u * over;
+  CornerSlope slopes[3];
   for (int i = 0; i < 3; ++i) {
-    const Lanes3& next = s.ends[(i + 1) % 3].point;
-    const Lanes3& last = s.ends[(i + 2) % 3].point;
-    const Lanes3 cross_product = 0.5 * cross(next + last, sides[i]);
-    // A vector has the same coordinates at a vertex as its difference from that.
-    const Lanes3 sum_of_others = sides[(i + 2) % 3] - sides[(i + 1) % 3];
-    const Lanes2 across = s.ends[i].coordinates(cross_product);
-    const Lanes2 along = s.ends[i].coordinates(sum_of_others);
-    us[i] = beta * along + alpha * across;
-    vs[i] = beta * across + -alpha * along;
-    radial[i] = alpha * (2 - 0.5 * dot(sides[i], sides[i]));
+    const Lanes3 &next = s.ends[(i + 1) % 3].point, &last = s.ends[(i + 2) % 3].point;
+    slopes[i] = cornerSlope(s.ends[i], next, last, alpha, beta);
   }
   const Lanes pull = 2 * s.stiffness * r;
-  for (int i = 0; i < 3; ++i) addGradient(s.rows, i, pull * vs[i], arrays);
+  for (int i = 0; i < 3; ++i) addGradient(s.rows, i, pull * slopes[i].v, arrays);
 
-  const Lanes bend = arrays.definite ? Lanes{} : -pull;
+  const Lanes stiffness = 4 * s.stiffness, bend = arrays.definite ? Lanes{} : -pull;
   for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Lanes2 bend_u = bend * us[i];
-    const Lanes2 stiff_v = 4 * s.stiffness * vs[i] + bend_u;
-    LaneBlock diagonal = outer(stiff_v, vs[i]) + outer(vs[i], bend_u);
-    diagonal.xx += bend * radial[i];
-    diagonal.yy += bend * radial[i];
-    addBlock(springs, first, i, i, diagonal, arrays);
-    LaneBlock coupling = outer(stiff_v, vs[j]);
-    if (!arrays.definite) {
-      coupling = coupling + outer(bend * vs[i], us[j]) +
-                 scaled(bend, mixed(s.ends[i], s.ends[j], s.ends[k].point, beta, alpha));
-    }
-    addBlock(springs, first, i, j, coupling, arrays);
+    const int j = (i + 1) % 3;
+    addBlock(springs, first, i, i, slopes[i].block(stiffness, bend), arrays);
+    addBlock(springs, first, i, j,
+             arrays.definite ? outer(stiffness * slopes[i].v, slopes[j].v)
+                             : coupling(s.ends, slopes, i, stiffness, bend, alpha, beta),
+             arrays);
   }
   return true;
 }

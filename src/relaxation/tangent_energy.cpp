@@ -209,7 +209,6 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
         {&restOf(first), sizeof(Spring)},
         {&first.stiffness, sizeof(Spring)},
         {compiled.places.data(), sizeof(compiled.places[0])}};
-    static_assert(sizeof(TangentPlace) == HessianArrays::kPlaceSize * sizeof(double));
     const HessianArrays arrays = {places_.front().frame.data(),
                                   static_cast<std::uint32_t>(freeCount()),
                                   gradient_.data(),

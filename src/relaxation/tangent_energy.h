@@ -6,18 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/tangent_place.h"
 #include "linear/block_matrix.h"
 #include "relaxation/particle_order.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
-
-/// A point of the sphere and the frame of its tangent plane, padded to the size that the kernels of
-/// Hessians take.
-struct alignas(2 * sizeof(double)) TangentPlace {
-  TangentFrame frame;
-  Vector3 point;
-};
 
 /// Energies are in units of `unit()`, the largest stiffness, so that single precision holds every
 /// Hessian. Free particles come in an order of their own, in which those that are joined are close;
