@@ -1,6 +1,8 @@
 #include "linear/multifrontal_cholesky.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "linear/elimination_kernels.h"
 
@@ -18,6 +20,7 @@ MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int thre
   constexpr std::size_t kNone = ~std::size_t(0);
   const std::size_t enough = pattern.rows() / 16 + 1;  // rows of a subtree
   std::vector<std::size_t> rows(parts.size()), first(parts.size()), parent(parts.size(), kNone);
+  std::vector<std::size_t> depths(parts.size(), 0);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     rows[p] = parts[p].end - parts[p].first;
     first[p] = p;
@@ -27,12 +30,64 @@ MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int thre
       parent[child] = p;
     }
   }
+  for (std::size_t p = parts.size(); p-- > 0;) {
+    if (parent[p] != kNone) depths[p] = depths[parent[p]] + 1;
+  }
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (rows[p] > enough) {
       above_.push_back(p);
     } else if (parent[p] == kNone || rows[parent[p]] > enough) {
       subtrees_.emplace_back(first[p], p + 1);
     }
+  }
+  layOut(depths);
+}
+
+void MultifrontalCholesky::layOut(const std::vector<std::size_t>& depths) {
+  for (const Part& part : dissection_.parts) {
+    const std::size_t own = part.end - part.first;
+    for (const std::uint32_t child : part.children) {
+      Front& front = fronts_[child];
+      for (const std::uint32_t place : dissection_.parts[child].boundary) {
+        front.rows.push_back(static_cast<std::uint32_t>(positionOf(part, place)));
+        if (front.rows.back() < own) ++front.rows_above;
+      }
+    }
+  }
+  for (const auto& [begin, end] : subtrees_) {
+    std::vector<std::size_t> numbers(end - begin);
+    std::iota(numbers.begin(), numbers.end(), begin);
+    layOutRests(numbers, depths);
+  }
+  layOutRests(above_, depths);
+}
+
+/// Rests of even and of odd depth stand on a stack each, as a part takes those of its children off
+/// one when its own is on the other.
+void MultifrontalCholesky::layOutRests(const std::vector<std::size_t>& numbers,
+                                       const std::vector<std::size_t>& depths) {
+  const auto sizeOf = [&](std::size_t p) {
+    const auto rows = static_cast<Eigen::Index>(2 * dissection_.parts[p].boundary.size());
+    return rows * rows;
+  };
+  std::array<Eigen::Index, 2> heights = {}, highest = {};
+  std::vector<Eigen::Index> places;
+  for (const std::size_t p : numbers) {
+    const std::size_t stack = depths[p] % 2;
+    places.push_back(heights[stack]);
+    heights[stack] += sizeOf(p);
+    highest[stack] = std::max(highest[stack], heights[stack]);
+    for (const std::uint32_t child : dissection_.parts[p].children) {
+      if (std::binary_search(numbers.begin(), numbers.end(), child)) {
+        heights[1 - stack] -= sizeOf(child);
+      }
+    }
+  }
+  double* room = remains_.emplace_back(highest[0] + highest[1]).data();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto rows = static_cast<Eigen::Index>(2 * dissection_.parts[numbers[i]].boundary.size());
+    double* stack = depths[numbers[i]] % 2 == 0 ? room : room + highest[0];
+    new (&fronts_[numbers[i]].rest) Eigen::Map<Eigen::MatrixXd>(stack + places[i], rows, rows);
   }
 }
 
@@ -71,22 +126,27 @@ void MultifrontalCholesky::assemble(const Part& part, const Blocks<double, 2>& v
 }
 
 /// Adds what a child has left, column by column of its lower triangle.
-void MultifrontalCholesky::addChild(const Part& part, const Part& child, Front& front,
-                                    Front& below) const {
-  const std::size_t own = part.end - part.first, count = child.boundary.size();
-  std::vector<std::size_t> positions(count);
-  for (std::size_t k = 0; k < count; ++k) positions[k] = positionOf(part, child.boundary[k]);
-  for (std::size_t c = 0; c < count; ++c) {
-    const std::size_t column = positions[c];
-    for (std::size_t r = c; r < count; ++r) {
-      const std::size_t row = positions[r];
-      auto& target = row < own ? front.own : column < own ? front.below : front.rest;
-      target.block<2, 2>(2 * (row < own ? row : row - own),
-                         2 * (column < own ? column : column - own)) +=
-          below.rest.block<2, 2>(2 * r, 2 * c);
+void MultifrontalCholesky::addChild(Front& front, const Front& child) const {
+  const std::size_t count = child.rows.size(), above = child.rows_above;
+  const auto addRows = [&](std::size_t begin, std::size_t c, Eigen::Ref<Eigen::MatrixXd> target,
+                           std::size_t first_row, std::size_t column, std::size_t end) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double* from = &child.rest(0, static_cast<Eigen::Index>(2 * c + k));
+      double* to = &target(0, static_cast<Eigen::Index>(2 * column + k));
+      for (std::size_t r = begin; r < end; ++r) {
+        Eigen::Map<Eigen::Vector2d>(to + 2 * (child.rows[r] - first_row)) +=
+            Eigen::Map<const Eigen::Vector2d>(from + 2 * r);
+      }
     }
+  };
+  const auto own = static_cast<std::size_t>(front.own.cols() / 2);
+  for (std::size_t c = 0; c < above; ++c) {
+    addRows(c, c, front.own, 0, child.rows[c], above);
+    if (above < count) addRows(above, c, front.below, own, child.rows[c], count);
   }
-  below.rest.resize(0, 0);
+  for (std::size_t c = above; c < count; ++c) {
+    addRows(c, c, front.rest, own, child.rows[c] - own, count);
+  }
 }
 
 void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& values) {
@@ -97,12 +157,12 @@ void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& val
   const auto rest = static_cast<Eigen::Index>(2 * part.boundary.size());
   front.own.setZero(own, own);
   front.below.setZero(rest, own);
-  front.rest.setZero(rest, rest);
+  for (Eigen::Index c = 0; c < rest; ++c) front.rest.col(c).tail(rest - c).setZero();
   assemble(part, values, front);
   front.definite = true;
   for (const std::uint32_t child : part.children) {
     front.definite = front.definite && fronts_[child].definite;
-    if (front.definite) addChild(part, dissection_.parts[child], front, fronts_[child]);
+    if (front.definite) addChild(front, fronts_[child]);
   }
   if (!front.definite) return;
   front.definite = eliminationKernels().eliminate(

@@ -29,13 +29,18 @@ class MultifrontalCholesky : public Preconditioner<double> {
   /// A part's rows of the factor: of its own unknowns, over those of its boundary.
   struct Front {
     Eigen::MatrixXd own, below;
-    Eigen::MatrixXd rest;  ///< what elimination leaves to the parent; empty once that has it
+    /// What elimination leaves to the parent, of which the lower triangle counts; in `remains_`.
+    Eigen::Map<Eigen::MatrixXd> rest{nullptr, 0, 0};
+    std::vector<std::uint32_t> rows;  ///< of its boundary among the parent's rows
+    std::size_t rows_above = 0;       ///< how many of those are the parent's own
     bool definite = false;
   };
 
+  void layOut(const std::vector<std::size_t>& depths);
+  void layOutRests(const std::vector<std::size_t>& numbers, const std::vector<std::size_t>& depths);
   void factorise(std::size_t part, const Blocks<double, 2>& values);
   void assemble(const Part& part, const Blocks<double, 2>& values, Front& front) const;
-  void addChild(const Part& part, const Part& child, Front& front, Front& below) const;
+  void addChild(Front& front, const Front& child) const;
   static std::size_t positionOf(const Part& part, std::uint32_t place);
 
   const BlockPattern& pattern_;
@@ -46,6 +51,7 @@ class MultifrontalCholesky : public Preconditioner<double> {
   std::vector<std::pair<std::size_t, std::size_t>> subtrees_;
   std::vector<std::size_t> above_;
   std::vector<Front> fronts_;
+  std::vector<Eigen::VectorXd> remains_;  // room of the fronts' rests, used again and again
 };
 
 }  // namespace spherical_springs::core
