@@ -45,13 +45,8 @@ MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int thre
 
 void MultifrontalCholesky::layOut(const std::vector<std::size_t>& depths) {
   for (const Part& part : dissection_.parts) {
-    const std::size_t own = part.end - part.first;
     for (const std::uint32_t child : part.children) {
-      Front& front = fronts_[child];
-      for (const std::uint32_t place : dissection_.parts[child].boundary) {
-        front.rows.push_back(static_cast<std::uint32_t>(positionOf(part, place)));
-        if (front.rows.back() < own) ++front.rows_above;
-      }
+      fronts_[child].runs = runsOf(dissection_.parts[child], part);
     }
   }
   for (const auto& [begin, end] : subtrees_) {
@@ -60,6 +55,23 @@ void MultifrontalCholesky::layOut(const std::vector<std::size_t>& depths) {
     layOutRests(numbers, depths);
   }
   layOutRests(above_, depths);
+}
+
+std::vector<MultifrontalCholesky::Run> MultifrontalCholesky::runsOf(const Part& child,
+                                                                    const Part& parent) {
+  const std::size_t own = parent.end - parent.first;
+  std::vector<Run> runs;
+  for (std::uint32_t r = 0; r < child.boundary.size(); ++r) {
+    const std::size_t position = positionOf(parent, child.boundary[r]);
+    const bool is_own = position < own;
+    const auto to = static_cast<std::uint32_t>(is_own ? position : position - own);
+    if (runs.empty() || runs.back().is_own != is_own ||
+        runs.back().to + (r - runs.back().first) != to) {
+      runs.push_back({r, r, to, is_own});
+    }
+    runs.back().end = r + 1;
+  }
+  return runs;
 }
 
 /// Rests of even and of odd depth stand on a stack each, as a part takes those of its children off
@@ -125,27 +137,23 @@ void MultifrontalCholesky::assemble(const Part& part, const Blocks<double, 2>& v
   }
 }
 
-/// Adds what a child has left, column by column of its lower triangle.
-void MultifrontalCholesky::addChild(Front& front, const Front& child) const {
-  const std::size_t count = child.rows.size(), above = child.rows_above;
-  const auto addRows = [&](std::size_t begin, std::size_t c, Eigen::Ref<Eigen::MatrixXd> target,
-                           std::size_t first_row, std::size_t column, std::size_t end) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      const double* from = &child.rest(0, static_cast<Eigen::Index>(2 * c + k));
-      double* to = &target(0, static_cast<Eigen::Index>(2 * column + k));
-      for (std::size_t r = begin; r < end; ++r) {
-        Eigen::Map<Eigen::Vector2d>(to + 2 * (child.rows[r] - first_row)) +=
-            Eigen::Map<const Eigen::Vector2d>(from + 2 * r);
+/// Adds what a child has left, run by run of the columns of its lower triangle.
+void MultifrontalCholesky::addChild(Front& front, const Front& child) {
+  for (std::size_t i = 0; i < child.runs.size(); ++i) {
+    const Run& across = child.runs[i];
+    for (std::size_t j = i; j < child.runs.size(); ++j) {
+      const Run& down = child.runs[j];
+      auto& target = down.is_own ? front.own : front.below;
+      const Eigen::Index stride = across.is_own ? target.rows() : front.rest.rows();
+      double* first = across.is_own ? target.data() : front.rest.data();
+      for (Eigen::Index c = 2 * across.first; c < 2 * across.end; ++c) {
+        const Eigen::Index row = i == j ? c : 2 * down.first, rows = 2 * down.end - row;
+        const Eigen::Index to = 2 * down.to + row - 2 * down.first;
+        const Eigen::Index column = 2 * across.to + c - 2 * across.first;
+        Eigen::Map<Eigen::VectorXd>(first + column * stride + to, rows) +=
+            child.rest.col(c).segment(row, rows);
       }
     }
-  };
-  const auto own = static_cast<std::size_t>(front.own.cols() / 2);
-  for (std::size_t c = 0; c < above; ++c) {
-    addRows(c, c, front.own, 0, child.rows[c], above);
-    if (above < count) addRows(above, c, front.below, own, child.rows[c], count);
-  }
-  for (std::size_t c = above; c < count; ++c) {
-    addRows(c, c, front.rest, own, child.rows[c] - own, count);
   }
 }
 

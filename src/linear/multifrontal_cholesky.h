@@ -26,13 +26,18 @@ class MultifrontalCholesky : public Preconditioner<double> {
  private:
   using Part = NestedDissection::Part;
 
+  /// Rows side by side that are side by side in the parent, too, and its own or none of them.
+  struct Run {
+    std::uint32_t first, end, to;
+    bool is_own;  ///< the parent's, whose others count from 0 again
+  };
+
   /// A part's rows of the factor: of its own unknowns, over those of its boundary.
   struct Front {
     Eigen::MatrixXd own, below;
     /// What elimination leaves to the parent, of which the lower triangle counts; in `remains_`.
     Eigen::Map<Eigen::MatrixXd> rest{nullptr, 0, 0};
-    std::vector<std::uint32_t> rows;  ///< of its boundary among the parent's rows
-    std::size_t rows_above = 0;       ///< how many of those are the parent's own
+    std::vector<Run> runs;  ///< of its boundary among the parent's rows
     bool definite = false;
   };
 
@@ -40,7 +45,8 @@ class MultifrontalCholesky : public Preconditioner<double> {
   void layOutRests(const std::vector<std::size_t>& numbers, const std::vector<std::size_t>& depths);
   void factorise(std::size_t part, const Blocks<double, 2>& values);
   void assemble(const Part& part, const Blocks<double, 2>& values, Front& front) const;
-  void addChild(Front& front, const Front& child) const;
+  static std::vector<Run> runsOf(const Part& child, const Part& parent);
+  static void addChild(Front& front, const Front& child);
   static std::size_t positionOf(const Part& part, std::uint32_t place);
 
   const BlockPattern& pattern_;
