@@ -4,11 +4,14 @@
 #include <Eigen/Cholesky>
 
 #include "linear/elimination_kernels.h"
+#include "linear/small_elimination.h"
 
 namespace spherical_springs::core {
 namespace {
 
 bool eliminate(const FrontMatrix& front) {
+  constexpr std::ptrdiff_t kSmall = 128;  // below which Eigen's preparations cost more
+  if (front.own_size < kSmall) return eliminateSmall(front);
   using Matrix = Eigen::Map<Eigen::MatrixXd>;
   Matrix own(front.own, front.own_size, front.own_size);
   Matrix below(front.below, front.rest_size, front.own_size);

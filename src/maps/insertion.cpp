@@ -25,6 +25,12 @@ double leastFace(const Vector3& p, const Ring& ring, const Points& points) {
   return least;
 }
 
+/// Whether no face has an area above `least` two of whose sides have these chords. Such a face has
+/// at most 2 asin(tan(side / 2) tan(other side / 2)), which is .68 of their product up to 1.
+bool isSmaller(double chord, double other_chord, double least) {
+  return chord < 1 && other_chord < 1 && chord * other_chord < least;
+}
+
 }  // namespace
 
 /// Close enough to the first of the ring, on the bisector of the ring's angle there, all faces are
@@ -47,7 +53,9 @@ Vector3 placeInside(const Ring& ring, const Points& points) {
   }
   Vector3 best = centre.normalized();
   double least = leastFace(best, ring, points);
+  const double side = (second - corner).norm();
   for (int halving = 0; halving < 50; ++halving, length *= 0.6) {
+    if (isSmaller(length, side, least)) break;
     const Vector3 place = (corner + length * inward).normalized();
     const double smallest = leastFace(place, ring, points);
     if (smallest > least) {
