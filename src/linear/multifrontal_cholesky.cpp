@@ -48,6 +48,7 @@ void MultifrontalCholesky::layOut(const std::vector<std::size_t>& depths) {
     for (const std::uint32_t child : part.children) {
       fronts_[child].runs = runsOf(dissection_.parts[child], part);
     }
+    layOutEntries(part, fronts_[&part - dissection_.parts.data()]);
   }
   for (const auto& [begin, end] : subtrees_) {
     std::vector<std::size_t> numbers(end - begin);
@@ -119,21 +120,25 @@ std::size_t MultifrontalCholesky::positionOf(const Part& part, std::uint32_t pla
   return part.end - part.first + (found - part.boundary.begin());
 }
 
-void MultifrontalCholesky::assemble(const Part& part, const Blocks<double, 2>& values,
-                                    Front& front) const {
+void MultifrontalCholesky::layOutEntries(const Part& part, Front& front) const {
   const Graph& graph = pattern_.graph;
-  const std::size_t own = part.end - part.first;
   for (std::uint32_t place = part.first; place < part.end; ++place) {
     const std::uint32_t i = dissection_.order[place];
-    const std::size_t column = place - part.first;
     for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::uint32_t other = dissection_.places[graph.neighbours[e]];
       if (other < place) continue;
-      // The matrix is symmetric: the mirrored block is the transpose.
-      const std::size_t row = positionOf(part, other);
-      auto& target = row < own ? front.own : front.below;
-      target.block<2, 2>(2 * (row < own ? row : row - own), 2 * column) = values[e].transpose();
+      front.entries.push_back(
+          {e, static_cast<std::uint32_t>(positionOf(part, other)), place - part.first});
     }
+  }
+}
+
+void MultifrontalCholesky::assemble(const Blocks<double, 2>& values, Front& front) {
+  const auto own = static_cast<std::uint32_t>(front.own.cols() / 2);
+  for (const auto& [place, row, column] : front.entries) {
+    auto& target = row < own ? front.own : front.below;
+    // The matrix is symmetric: the mirrored block is the transpose.
+    target.block<2, 2>(2 * (row < own ? row : row - own), 2 * column) = values[place].transpose();
   }
 }
 
@@ -166,7 +171,7 @@ void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& val
   front.own.setZero(own, own);
   front.below.setZero(rest, own);
   for (Eigen::Index c = 0; c < rest; ++c) front.rest.col(c).tail(rest - c).setZero();
-  assemble(part, values, front);
+  assemble(values, front);
   front.definite = true;
   for (const std::uint32_t child : part.children) {
     front.definite = front.definite && fronts_[child].definite;

@@ -32,11 +32,17 @@ class MultifrontalCholesky : public Preconditioner<double> {
     bool is_own;  ///< the parent's, whose others count from 0 again
   };
 
+  /// A block of the matrix in a front, whose rows are those of `own` and then of `below`.
+  struct Entry {
+    std::uint32_t place, row, column;
+  };
+
   /// A part's rows of the factor: of its own unknowns, over those of its boundary.
   struct Front {
     Eigen::MatrixXd own, below;
     /// What elimination leaves to the parent, of which the lower triangle counts; in `remains_`.
     Eigen::Map<Eigen::MatrixXd> rest{nullptr, 0, 0};
+    std::vector<Entry> entries;
     std::vector<Run> runs;  ///< of its boundary among the parent's rows
     bool definite = false;
   };
@@ -44,7 +50,8 @@ class MultifrontalCholesky : public Preconditioner<double> {
   void layOut(const std::vector<std::size_t>& depths);
   void layOutRests(const std::vector<std::size_t>& numbers, const std::vector<std::size_t>& depths);
   void factorise(std::size_t part, const Blocks<double, 2>& values);
-  void assemble(const Part& part, const Blocks<double, 2>& values, Front& front) const;
+  void layOutEntries(const Part& part, Front& front) const;
+  static void assemble(const Blocks<double, 2>& values, Front& front);
   static std::vector<Run> runsOf(const Part& child, const Part& parent);
   static void addChild(Front& front, const Front& child);
   static std::size_t positionOf(const Part& part, std::uint32_t place);

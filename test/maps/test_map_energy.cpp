@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include "maps/coverage.h"
 #include "maps/map_energy.h"
@@ -112,6 +113,26 @@ TEST(MapEnergy, SweepsGiveTheSameBitsOnAnyNumberOfThreads) {
   const Points expected = swept(1);
   EXPECT_TRUE(expected != mesh.vertices);
   for (const int threads : {2, 3}) EXPECT_TRUE(swept(threads) == expected) << threads;
+}
+
+TEST(MapEnergy, HasTheSameBitsOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = testing::bumps(5, 1);
+  const auto evaluated = [&](int threads, FaceHessian hessian) {
+    MapEnergy energy(mesh.faces, sharesOf(mesh), shaken(mesh, 1e-3), threads);
+    energy.setShape(0.3);
+    energy.evaluate(hessian);
+    std::vector<double> numbers = {energy.value(), energy.valueAfter(-1e-9 * energy.gradient()),
+                                   energy.spread()};
+    numbers.insert(numbers.end(), energy.gradient().begin(), energy.gradient().end());
+    for (const auto& block : energy.hessian()) {
+      numbers.insert(numbers.end(), block.data(), block.data() + block.size());
+    }
+    return numbers;
+  };
+  for (const auto hessian : {FaceHessian::exact, FaceHessian::definite}) {
+    const std::vector<double> expected = evaluated(1, hessian);
+    for (const int threads : {2, 3}) EXPECT_TRUE(evaluated(threads, hessian) == expected);
+  }
 }
 
 TEST(MapEnergy, IsInfiniteAtAFold) {
