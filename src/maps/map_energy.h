@@ -70,6 +70,8 @@ class MapEnergy {
   double spread() const;
 
  private:
+  static constexpr std::uint32_t kNoBlock = ~0u;  // of a vertex that stays
+
   /// A unit vector, padded for kernels.
   struct PaddedPoint {
     Vector3 point;
