@@ -104,11 +104,11 @@ Bench mixedBench(std::uint32_t count, double shape, AreaCost cost) {
   bench.cost = cost;
   for (std::uint32_t f = 0; f < count; ++f) {
     const double size = std::exp(random.between(-14, 1));
-    const double height = std::exp(random.between(-7, 0.5));
-    const bool folded = cost == AreaCost::square && f % 3 == 0;
-    const auto points =
-        f % 20 == 0 ? wideTriangle(random.between(0.01, 1), random)
-                    : triangleOf(size, folded ? -height : height, random.between(-2, 3), random);
+    const bool thin = f % 7 == 0, folded = cost == AreaCost::square && f % 3 == 0;
+    const double height = std::exp(thin ? random.between(-14, -7) : random.between(-7, 0.5));
+    const double along = thin ? height * random.between(-1, 1) : random.between(-2, 3);
+    const auto points = f % 20 == 0 ? wideTriangle(random.between(0.01, 1), random)
+                                    : triangleOf(size, folded ? -height : height, along, random);
     const double area = std::abs(core::solidAngle(points[0], points[1], points[2]));
     bench.add(points, area * std::exp(random.between(-4, 4)), random.between(0.1, 2));
   }
