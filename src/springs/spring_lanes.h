@@ -3,6 +3,7 @@
 //
 // `value` is the condition C, and `slopes` are -factor grad C at the ends, but for what is along
 // their positions; they are 0 where the spring is hard, near a place without a derivative.
+// `gradients` are p x grad C at all ends p but the last; they mean nothing where it is hard.
 #pragma once
 
 #include "base/lanes.h"
@@ -29,12 +30,12 @@ constexpr double kShortest = 1e-16;  // of a quarter of a squared chord, and of 
 /// `AngleSpring`.
 struct AngleLanes {
   Lanes angle, sine;
-  Lanes3 beside;    ///< whose cross product with a is a x b and does not cancel
-  LaneMask is_far;  ///< `beside` is a + b; elsewhere b - a
+  Lanes3 chord, sum;  ///< b - a and a + b
+  Lanes3 beside;      ///< whose cross product with a is a x b and does not cancel
+  LaneMask is_far;    ///< `beside` is a + b; elsewhere b - a
   LaneMask hard;
 
-  AngleLanes(const Lanes3& a, const Lanes3& b) {
-    const Lanes3 chord = b - a, sum = a + b;
+  [[gnu::always_inline]] AngleLanes(const Lanes3& a, const Lanes3& b) : chord(b - a), sum(a + b) {
     const Lanes near = 0.25 * dot(chord, chord), far = 0.25 * dot(sum, sum);
     const LaneMask is_near = near < 0.25;
     is_far = far < 0.25;
@@ -48,11 +49,15 @@ struct AngleLanes {
     hard = ~((near >= kShortest) & (far >= kShortest));
   }
 
-  Lanes value(const Lanes& rest) const { return angle - rest; }
+  [[gnu::always_inline]] Lanes value(const Lanes& rest) const { return angle - rest; }
 
-  void slopes(const Lanes& factor, Lanes3 (&at)[2]) const {
+  [[gnu::always_inline]] void slopes(const Lanes& factor, Lanes3 (&at)[2]) const {
     at[0] = select0(~hard, factor / sine) * beside;
     at[1] = select(is_far, at[0], negative(at[0]));
+  }
+
+  [[gnu::always_inline]] void gradients(Lanes3 (&of)[1]) const {
+    of[0] = 0.5 / sine * cross(chord, sum);
   }
 };
 
@@ -62,7 +67,7 @@ struct TriangleEdges {
   Lanes3 area;  ///< a x b + b x c + c x a
   Lanes triple_product, denominator;
 
-  TriangleEdges(const Lanes3& a, const Lanes3& b, const Lanes3& c)
+  [[gnu::always_inline]] TriangleEdges(const Lanes3& a, const Lanes3& b, const Lanes3& c)
       : ab(b - a),
         bc(c - b),
         ca(a - c),
@@ -81,6 +86,15 @@ struct TriangleEdges {
   }
 };
 
+/// Turns slopes at the first two corners into gradients: p x grad C = slope x p.
+template <class Formula>
+[[gnu::always_inline]] inline void gradientsBy(const Formula& formula, Lanes3 (&of)[2]) {
+  Lanes3 slopes[3];
+  formula.slopes(Lanes{} + 1, slopes);
+  of[0] = cross(slopes[0], formula.a);
+  of[1] = cross(slopes[1], formula.b);
+}
+
 /// `SolidAngleSpring`, by the formula of Oosterom and Strackee 1983.
 struct SolidAngleLanes {
   Lanes3 a, b, c;
@@ -88,7 +102,8 @@ struct SolidAngleLanes {
   Lanes squared_norm;
   LaneMask hard;  ///< two corners are nearly antipodal
 
-  SolidAngleLanes(const Lanes3& first, const Lanes3& second, const Lanes3& third)
+  [[gnu::always_inline]] SolidAngleLanes(const Lanes3& first, const Lanes3& second,
+                                         const Lanes3& third)
       : a(first), b(second), c(third), e(a, b, c) {
     constexpr double kAntipodal = 0.25;
     squared_norm = e.triple_product * e.triple_product + e.denominator * e.denominator;
@@ -96,7 +111,7 @@ struct SolidAngleLanes {
   }
 
   /// Returns the difference from the area at rest, modulo 4 pi.
-  Lanes value(const Lanes& rest) const {
+  [[gnu::always_inline]] Lanes value(const Lanes& rest) const {
     Lanes difference = 2 * arctangent(e.triple_product, e.denominator) - rest;
     difference -= select0(difference > 2 * kPi, 4 * kPi - Lanes{});
     difference += select0(difference < -2 * kPi, 4 * kPi - Lanes{});
@@ -104,20 +119,22 @@ struct SolidAngleLanes {
   }
 
   /// At a the gradient is beta (b x c) - alpha (b + c), but for what is along a.
-  void slopes(const Lanes& factor, Lanes3 (&at)[3]) const {
+  [[gnu::always_inline]] void slopes(const Lanes& factor, Lanes3 (&at)[3]) const {
     const Lanes pull = select0(~hard, 2 * factor / squared_norm);
     const Lanes alpha = pull * e.triple_product, beta = pull * e.denominator;
     at[0] = alpha * (e.ab - e.ca) + e.tripleProductSlope(beta, a, e.bc);
     at[1] = alpha * (e.bc - e.ab) + e.tripleProductSlope(beta, b, e.ca);
     at[2] = alpha * (e.ca - e.bc) + e.tripleProductSlope(beta, c, e.ab);
   }
+
+  [[gnu::always_inline]] void gradients(Lanes3 (&of)[2]) const { gradientsBy(*this, of); }
 };
 
 /// The odd step from -1 to 1 over [-1, 1], and its slope.
 struct SignLanes {
   Lanes value, slope;
 
-  explicit SignLanes(const Lanes& x) {
+  [[gnu::always_inline]] explicit SignLanes(const Lanes& x) {
     const Lanes u = select(x < -1, Lanes{} - 1, select(x > 1, Lanes{} + 1, x));
     const Lanes square = u * u, rest = 1 - square;
     value = 0.125 * u * (15 - square * (10 - 3 * square));
@@ -135,8 +152,8 @@ struct OrientedAngleLanes {
   LaneMask is_sharp;  ///< the change of sign
   LaneMask hard;
 
-  OrientedAngleLanes(const Lanes3& first, const Lanes3& second, const Lanes3& third,
-                     const Lanes& width_in_use)
+  [[gnu::always_inline]] OrientedAngleLanes(const Lanes3& first, const Lanes3& second,
+                                            const Lanes3& third, const Lanes& width_in_use)
       : a(first),
         b(second),
         c(third),
@@ -147,15 +164,19 @@ struct OrientedAngleLanes {
         is_sharp(width <= 0),
         hard(between.hard | is_sharp) {}
 
-  Lanes value(const Lanes& rest) const { return sign.value * between.angle - rest; }
+  [[gnu::always_inline]] Lanes value(const Lanes& rest) const {
+    return sign.value * between.angle - rest;
+  }
 
-  void slopes(const Lanes& factor, Lanes3 (&at)[3]) const {
+  [[gnu::always_inline]] void slopes(const Lanes& factor, Lanes3 (&at)[3]) const {
     const Lanes3 along = select0(~hard, factor * sign.value / between.sine) * between.beside;
     const Lanes across = select0(~hard, factor * sign.slope * between.angle / width);
     at[0] = along + e.tripleProductSlope(across, a, e.bc);
     at[1] = select(between.is_far, along, negative(along)) + e.tripleProductSlope(across, b, e.ca);
     at[2] = e.tripleProductSlope(across, c, e.ab);
   }
+
+  [[gnu::always_inline]] void gradients(Lanes3 (&of)[2]) const { gradientsBy(*this, of); }
 };
 
 }  // namespace

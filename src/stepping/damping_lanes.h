@@ -38,34 +38,33 @@ struct FreshGradients : LaneGradients<kEnds> {
   LaneMask hard;
 };
 
-/// Turns slopes at the ends into gradients as `Condition` has them: p x grad C = slope x p.
-template <class Formula, std::size_t kEnds>
-[[gnu::always_inline]] inline FreshGradients<kEnds> gradientsBy(const Formula& formula,
-                                                                const Lanes3 (&points)[kEnds]) {
-  Lanes3 slopes[kEnds];
-  formula.slopes(Lanes{} + 1, slopes);
-  FreshGradients<kEnds> gradients;
-  for (std::size_t i = 0; i + 1 < kEnds; ++i) gradients.of[i] = cross(slopes[i], points[i]);
+template <class Formula, int kEnds>
+[[gnu::always_inline]] inline void takeGradients(const Formula& formula,
+                                                 FreshGradients<kEnds>& gradients) {
+  formula.gradients(gradients.of);
   gradients.hard = formula.hard;
-  return gradients;
 }
 
 FreshGradients<2> gradientsOf(const Batch<ArcDampers>& batch, const double* positions) {
-  const Lanes3 points[2] = {batch.gather(0, positions), batch.gather(1, positions)};
-  return gradientsBy(AngleLanes(points[0], points[1]), points);
+  FreshGradients<2> gradients;
+  takeGradients(AngleLanes(batch.gather(0, positions), batch.gather(1, positions)), gradients);
+  return gradients;
 }
 
 FreshGradients<3> gradientsOf(const Batch<TriangleDampers>& batch, const double* positions) {
-  const Lanes3 points[3] = {batch.gather(0, positions), batch.gather(1, positions),
-                            batch.gather(2, positions)};
-  return gradientsBy(SolidAngleLanes(points[0], points[1], points[2]), points);
+  FreshGradients<3> gradients;
+  takeGradients(SolidAngleLanes(batch.gather(0, positions), batch.gather(1, positions),
+                                batch.gather(2, positions)),
+                gradients);
+  return gradients;
 }
 
 FreshGradients<3> gradientsOf(const Batch<OrientedArcDampers>& batch, const double* positions) {
-  const Lanes3 points[3] = {batch.gather(0, positions), batch.gather(1, positions),
-                            batch.gather(2, positions)};
-  return gradientsBy(
-      OrientedAngleLanes(points[0], points[1], points[2], batch.lanes(batch.group->width)), points);
+  FreshGradients<3> gradients;
+  takeGradients(OrientedAngleLanes(batch.gather(0, positions), batch.gather(1, positions),
+                                   batch.gather(2, positions), batch.lanes(batch.group->width)),
+                gradients);
+  return gradients;
 }
 
 template <class Dampers>
