@@ -5,14 +5,14 @@
 
 namespace {
 
-/// The lower triangle counts.
+/// A symmetric matrix; its lower triangle counts.
 struct LaneMatrix6 {
   Lanes entries[36];
 
   Lanes& at(int i, int j) { return entries[i > j ? 6 * i + j : 6 * j + i]; }
 };
 
-/// Whether no pivot of a Cholesky factorisation is positive up to the end.
+/// Returns the lanes in which a pivot of the Cholesky factorisation is not positive.
 inline LaneMask indefinite(LaneMatrix6 m) {
   LaneMask result = {};
   for (int k = 0; k < 6; ++k) {
@@ -57,7 +57,8 @@ inline void rotate(const LaneRotation& r, int p, int q, LaneMatrix6& m, Lanes (&
   }
 }
 
-/// Jacobi's method, by rounds of three rotations that do not meet.
+/// Makes the matrices that are wanted diagonal by Jacobi's method, in rounds of three rotations of
+/// different rows. `vectors` has the eigenvectors as columns.
 inline void diagonalise(LaneMatrix6& m, Lanes (&vectors)[6][6], const LaneMask& wanted) {
   constexpr int kRounds[5][3][2] = {{{0, 1}, {2, 3}, {4, 5}},
                                     {{0, 2}, {1, 4}, {3, 5}},
@@ -85,7 +86,7 @@ inline void diagonalise(LaneMatrix6& m, Lanes (&vectors)[6][6], const LaneMask& 
   }
 }
 
-/// Takes the place of the matrices that have negative eigenvalues: the nearest one without.
+/// Replaces each active matrix that has negative eigenvalues by the nearest one without.
 inline void makeDefinite(LaneMatrix6& matrix, const LaneMask& active) {
   const LaneMask wanted = indefinite(matrix) & active;
   if (!any(wanted)) return;

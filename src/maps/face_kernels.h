@@ -60,21 +60,25 @@ struct LeftOut {
   std::uint32_t count;
 };
 
-/// What is read of a place: `core::kPlaceSize` numbers of a `core::TangentPlace`.
+/// Kernels over faces. `places` are `core::TangentPlace`, of `core::kPlaceSize` numbers each.
 struct FaceKernels {
   /// Sums over the faces from `begin` to `end`. Energy is infinite where a face is not clearly
   /// positive and the cost is a barrier.
   FaceSums (*sums)(const FaceLists& faces, const PointRows& points, std::uint32_t begin,
                    std::uint32_t end, LeftOut& left_out);
+  /// Writes the area of each face.
   void (*areas)(const FaceLists& faces, const PointRows& points, std::uint32_t begin,
                 std::uint32_t end, double* areas, LeftOut& left_out);
   /// Writes the terms of each face.
   /// @return the energy.
   double (*terms)(const FaceLists& faces, const double* places, std::uint32_t begin,
                   std::uint32_t end, FaceHessian hessian, FaceTerms* terms, LeftOut& left_out);
+  /// Sums the terms of the faces round a vertex.
   /// @return whether no face is large; else there is no result.
   bool (*ring_terms)(const RingLists& ring, const double* places, std::uint32_t begin,
                      std::uint32_t end, const double* place, RingTerms& terms);
+  /// Sums the energies of the faces round a vertex if it were at `point`.
+  /// @return whether no face is large; else there is no result.
   bool (*ring_value)(const RingLists& ring, const PointRows& points, std::uint32_t begin,
                      std::uint32_t end, const double* point, double& value);
 };

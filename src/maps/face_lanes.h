@@ -40,7 +40,7 @@ void areas(const FaceLists& lists, const PointRows& points, std::uint32_t begin,
   }
 }
 
-/// Gradient and Hessian of faces.
+/// The gradient and the Hessian of faces by tangent coordinates of their corners.
 struct LaneTerms {
   Lanes2 gradient[3];
   LaneBlock diagonal[3], coupling[3];  // of each corner with the next one
@@ -67,7 +67,8 @@ inline LaneTerms areaTerms(const LaneFrame (&corners)[3], const LaneTriangle& t,
   return terms;
 }
 
-/// Adds the block of an edge at one of its ends, of the end's coordinates of the other one.
+/// Adds the gradient and the block of an edge at one of its ends; `other` is the other end in the
+/// tangent coordinates of this one.
 inline void addEdge(const Cost<Lanes>& cost, const Lanes2& other, const Lanes& cosine,
                     Lanes2& gradient, LaneBlock& diagonal) {
   const Lanes radial = cost.slope * cosine;
@@ -77,7 +78,8 @@ inline void addEdge(const Cost<Lanes>& cost, const Lanes2& other, const Lanes& c
   diagonal.yy -= radial;
 }
 
-/// @return the energy of the edges.
+/// Adds the gradients and blocks of the edges.
+/// @return their energy.
 inline Lanes addEdges(const LaneFaces& faces, const LaneFrame (&corners)[3], const LaneTriangle& t,
                       const Lanes& over_sums, LaneTerms& terms) {
   const Lanes scale = edgeScale(faces);

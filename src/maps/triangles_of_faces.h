@@ -11,7 +11,7 @@ using namespace spherical_springs::mesh;
 
 constexpr double kInfinity = __builtin_huge_val();
 
-/// What lanes know of their faces.
+/// The constants of the faces that lanes work on.
 struct LaneFaces {
   Lanes over_share, weight;
   LaneMask active;  ///< the first lanes, as far as there are faces
@@ -57,7 +57,7 @@ struct LaneTriangle {
     large = ~((denominator > kLeastDenominator) & (square < kLargestSquare));
   }
 
-  /// `surelyPositive` in coverage.h, without a root.
+  /// Returns what `surelyPositive` in coverage.h does, without a root.
   LaneMask surelyPositive() const {
     constexpr double kSquaredRounding = 9e-30;
     return (triple_product > 0) & (triple_product * triple_product >
@@ -75,7 +75,7 @@ struct LaneTriangle {
   }
 };
 
-/// Times the weight.
+/// Returns the cost of the area and of the half sphere, times the weight of each face.
 inline Cost<Lanes> areaCost(const LaneFaces& faces, const LaneTriangle& t) {
   Cost<Lanes> cost = faces.cost == AreaCost::square ? squareCost(t.area, faces.over_share)
                                                     : barrierCost(t.area, faces.over_share);
@@ -93,7 +93,7 @@ inline Lanes edgeScale(const LaneFaces& faces) {
   return faces.shape * faces.weight * faces.over_share;
 }
 
-/// Times the scale; of the side opposite of a corner.
+/// Returns the cost of the side opposite of a corner, times `scale`.
 inline Cost<Lanes> sideCost(const LaneTriangle& t, int i, const Lanes& over_sums,
                             const Lanes& scale) {
   const Cost<Lanes> cost = edgeCost(t.squared_chords[i], t.overSum(i, over_sums));
@@ -107,7 +107,7 @@ inline void leaveOut(const LaneMask& mask, std::uint32_t first, LeftOut& left_ou
   }
 }
 
-/// One corner of the faces from `first` on; the last face fills what lanes are left.
+/// Fills `rows` with one corner of the faces from `first` on; lanes left over get the last face.
 inline void cornerRows(const FaceLists& faces, int corner, std::uint32_t first, std::uint32_t end,
                        std::uint32_t (&rows)[kLanes]) {
   for (std::uint32_t k = 0; k < kLanes; ++k) {
