@@ -43,7 +43,8 @@ struct LaneTurn {
   Lanes cosine, sinc;
 };
 
-/// Returns what `turnBy` in src/geometry/sphere.cpp does, with fewer terms where all angles are below 0.03.
+/// Returns what `turnBy` in src/geometry/sphere.cpp does, with fewer terms where all angles are
+/// below 0.03.
 inline LaneTurn turnBy(const Lanes& squared_angle) {
   constexpr double kSmall = 0.25, kTiny = 1e-3;
   constexpr double kCosine[] = {1,          -1. / 2,       1. / 24,        -1. / 720,
