@@ -26,21 +26,25 @@ class MultifrontalCholesky : public Preconditioner<double> {
  private:
   using Part = NestedDissection::Part;
 
-  /// Rows side by side that are side by side in the parent, too, and its own or none of them.
+  /// Successive rows of a boundary that are successive rows of the parent's front as well, either
+  /// all among its own unknowns or all among its boundary.
   struct Run {
-    std::uint32_t first, end, to;
-    bool is_own;  ///< the parent's, whose others count from 0 again
+    std::uint32_t first, end;  ///< rows of the boundary
+    std::uint32_t to;          ///< row of the first one in the parent's `own` or `below`
+    bool is_own;               ///< whether they lie in the parent's `own`
   };
 
-  /// A block of the matrix in a front, whose rows are those of `own` and then of `below`.
+  /// A block of the matrix that is put into a front.
   struct Entry {
-    std::uint32_t place, row, column;
+    std::uint32_t place;        ///< among the blocks of the matrix
+    std::uint32_t row, column;  ///< in the front; rows of `below` follow those of `own`
   };
 
   /// A part's rows of the factor: of its own unknowns, over those of its boundary.
   struct Front {
     Eigen::MatrixXd own, below;
-    /// What elimination leaves to the parent, of which the lower triangle counts; in `remains_`.
+    /// The Schur complement that elimination leaves to the parent. Only its lower triangle is
+    /// valid; its memory is in `remains_`.
     Eigen::Map<Eigen::MatrixXd> rest{nullptr, 0, 0};
     std::vector<Entry> entries;
     std::vector<Run> runs;  ///< of its boundary among the parent's rows

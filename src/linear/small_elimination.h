@@ -27,8 +27,8 @@ inline Lanes loadPart(const double* from, std::ptrdiff_t count) {
   return result;
 }
 
-/// Takes factors coefficients^T from W columns of `target`, of V lanes of rows each; of the last
-/// lanes where a `part` of them is rows.
+/// Subtracts factors coefficients^T from a tile of `target` that is W columns wide and V registers
+/// of rows high. With kIsPart only the first `part` lanes of the last register are rows.
 template <int V, int W, bool kIsPart>
 inline void subtractTile(const Columns& factors, const Columns& coefficients, std::ptrdiff_t depth,
                          const Columns& target, std::ptrdiff_t part) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kSweepBlock = 16;  // vertices that one thread moves in turn
 
-/// Numbers by the first and last of which each vertex's corners stand.
+/// Returns the index of the first corner of each vertex in a list by vertices, and its end.
 std::vector<std::uint32_t> firstCorners(const Faces& faces, std::size_t vertices) {
   std::vector<std::uint32_t> first(vertices + 1, 0);
   for (Eigen::Index c = 0; c < faces.size(); ++c) ++first[faces(c) + 1];
@@ -18,8 +18,8 @@ std::vector<std::uint32_t> firstCorners(const Faces& faces, std::size_t vertices
   return first;
 }
 
-/// Neighbours of the vertices before `free`, all of whose faces are there: the next corners of
-/// those.
+/// Returns the graph of the vertices before `free`, all of whose faces are given: the neighbours of
+/// a vertex are the next corners of its faces.
 core::Graph meshGraph(const Faces& faces, std::int32_t free) {
   const auto forEachEdge = [&](const auto& body) {
     for (Eigen::Index c = 0; c < faces.size(); ++c) {
@@ -47,7 +47,7 @@ std::vector<std::uint32_t> freeFirst(const Points& points, std::int32_t free) {
   return order;
 }
 
-/// One a face, with what kernels may read after the last.
+/// Returns one number a face, and the padding that kernels may read after the last.
 std::vector<double> padded(const Eigen::ArrayXd& values) {
   std::vector<double> result(values.size() + kLanePadding, 1);
   std::copy(values.begin(), values.end(), result.begin());

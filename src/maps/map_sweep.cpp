@@ -8,7 +8,7 @@
 namespace spherical_springs::mesh {
 namespace {
 
-/// Newton's step, uphill directions of curvature turned round.
+/// Returns a Newton step in which negative curvatures count by their magnitude.
 Eigen::Vector2d newtonStep(const RingTerms& terms) {
   constexpr double kLeastCurvature = 1e-6;  // of the other direction's
   const auto& [xx, xy, yy] = terms.hessian;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kShortest = 1e-16;  // of a quarter of a squared chord, and of its supplement
 
-/// atan2(y, x)
+/// Returns atan2(y, x).
 [[gnu::always_inline]] inline Lanes arctangent(const Lanes& y, const Lanes& x) {
   constexpr double kTangentOfEighth = 0.41421356237309503;  // of pi / 8
   const Lanes up = absolute(y), across = absolute(x);
@@ -27,7 +27,7 @@ constexpr double kShortest = 1e-16;  // of a quarter of a squared chord, and of 
   return select(y < 0, -angle, angle);
 }
 
-/// `AngleSpring`.
+/// The formula of `AngleSpring`.
 struct AngleLanes {
   Lanes angle, sine;
   Lanes3 chord, sum;  ///< b - a and a + b
@@ -95,7 +95,7 @@ template <class Formula>
   of[1] = cross(slopes[1], formula.b);
 }
 
-/// `SolidAngleSpring`, by the formula of Oosterom and Strackee 1983.
+/// The formula of `SolidAngleSpring` (Oosterom and Strackee 1983).
 struct SolidAngleLanes {
   Lanes3 a, b, c;
   TriangleEdges e;
@@ -142,7 +142,7 @@ struct SignLanes {
   }
 };
 
-/// `OrientedAngleSpring`.
+/// The formula of `OrientedAngleSpring`.
 struct OrientedAngleLanes {
   Lanes3 a, b, c;
   TriangleEdges e;

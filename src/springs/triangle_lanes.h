@@ -65,9 +65,9 @@ inline LaneBlock mixed(const LaneFrame& a, const LaneFrame& b, const Lanes3& c, 
   return {first.x, first.y, second.x, second.y};
 }
 
-/// With z = denominator + i triple product, the area is 2 arg z; u and v are the real and the
-/// imaginary part of (grad z) / z at a corner, and `radial` is what the curvature of the sphere
-/// adds.
+/// The derivatives of the area of a triangle at one corner. The area is 2 arg z, where z is the
+/// denominator + i times the triple product; u and v are the real and the imaginary part of
+/// (grad z) / z, and `radial` is the share of the curvature of the sphere.
 struct CornerSlope {
   Lanes2 u, v;
   Lanes radial;

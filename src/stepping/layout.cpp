@@ -17,7 +17,7 @@ void takeNumbersOf(const Spring& spring, Springs& springs, std::uint32_t lane) {
   springs.stiffness[lane] = spring.stiffness;
 }
 
-// Each puts the numbers of the springs of an element, whose indices are given, into its lane.
+// The overloads below copy the numbers of the springs of an element into its lane of a group.
 
 void takeNumbersOf(const System& system, const SpringIndices<Arcs>& indices, std::uint32_t lane,
                    Arcs& group) {

@@ -81,7 +81,7 @@ template <class Group>
 ForceKernel<Group> forceKernel(const StepKernels& kernels, Kind<Group>) {
   return std::get<ForceKernel<Group>>(kernels.forces);
 }
-/// Leaves all springs to their formula.
+/// Returns a kernel that leaves all springs to their formula.
 template <class Spring>
 ForceKernel<PlainSprings<Spring>> forceKernel(const StepKernels&, Kind<PlainSprings<Spring>>) {
   return [](const PlainSprings<Spring>*, std::uint32_t group_count, const double*, double*,
@@ -96,7 +96,7 @@ template <class Group>
 EnergyKernel<Group> energyKernel(const StepKernels& kernels, Kind<Group>) {
   return std::get<EnergyKernel<Group>>(kernels.energies);
 }
-/// Leaves all springs that count to their formula.
+/// Returns a kernel that leaves all springs below the limit to their formula.
 template <class Spring>
 EnergyKernel<PlainSprings<Spring>> energyKernel(const StepKernels&, Kind<PlainSprings<Spring>>) {
   return [](const PlainSprings<Spring>* groups, std::uint32_t group_count, const double*,
