@@ -98,16 +98,16 @@ void Handlers::removeSprings(const RemoveSprings::Request& request, Answer<Remov
 
 void Handlers::getScene(const GetScene::Request&, Answer<GetScene>& answer) {
   auto& response = answer.response;
-  const auto [scene, time] = runner_.present();
-  response.time = time;
+  const core::SceneFile present = runner_.present();
+  response.time = present.time;
   const auto fill = [](const auto& table, auto& ids, auto& messages) {
     ids = table.ids();
     messages.reserve(table.size());
     for (const auto& item : table.items()) messages.push_back(toMessage(item));
   };
-  fill(scene.particles(), response.particle_ids, response.particles);
+  fill(present.scene.particles(), response.particle_ids, response.particles);
   forEachKindInMessages([&](auto kind) {
-    fill(scene.springs<typename decltype(kind)::Spring>(), kind.ids(response),
+    fill(present.scene.springs<typename decltype(kind)::Spring>(), kind.ids(response),
          kind.springs(response));
   });
 }
