@@ -25,7 +25,8 @@ Eigen::VectorXd reach(const System& system, const Points& positions) {
 
 /// Calls `visit(spring, index)` for each spring that `undefinedSpring` may name.
 template <class Visitor>
-void forEachUndefined(const System& system, const Points& positions, const Visitor& visit) {
+void forEachUndefined(const System& system, const Points& positions, double near,
+                      const Visitor& visit) {
   constexpr double kAtRest = 1e-6;   // [rad] or [sr]
   constexpr double kSteepest = 1e9;  // beyond it rounding of the points makes the value
   forEachKind([&](auto kind) {
@@ -33,7 +34,7 @@ void forEachUndefined(const System& system, const Points& positions, const Visit
     const auto& springs = system.springs<Spring>();
     for (std::size_t i = 0; i < springs.size(); ++i) {
       const auto points = System::points(springs[i], positions);
-      if (!nearlyUndefined(springs[i], points)) continue;
+      if (distanceToUndefined(springs[i], points) >= near) continue;
       const auto c = condition(springs[i], points);
       double slope = 0;  // 0 at the very place, where the value is a convention
       for (const Vector3& gradient : c.gradient) slope = std::max(slope, gradient.norm());
@@ -58,9 +59,9 @@ Points displaced(const System& system, Points positions, double share, unsigned 
   return positions;
 }
 
-std::string undefinedSpring(const System& system, const Points& positions) {
+std::string undefinedSpring(const System& system, const Points& positions, double near) {
   std::string name;
-  forEachUndefined(system, positions, [&](const auto& spring, std::size_t index) {
+  forEachUndefined(system, positions, near, [&](const auto& spring, std::size_t index) {
     if (name.empty()) name = nameOf<std::decay_t<decltype(spring)>>(system, index);
   });
   return name;
@@ -69,7 +70,7 @@ std::string undefinedSpring(const System& system, const Points& positions) {
 Points besideUndefined(const System& system, Points positions, double distance, unsigned seed) {
   std::mt19937 generator(seed);
   const Points from = positions;
-  forEachUndefined(system, from, [&](const auto& spring, std::size_t) {
+  forEachUndefined(system, from, kUndefined, [&](const auto& spring, std::size_t) {
     for (const std::uint32_t i : spring.particles) {
       const double angle = 2 * kPi * (generator() / (std::mt19937::max() + 1.));
       if (system.pinned(i)) continue;

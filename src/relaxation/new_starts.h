@@ -17,12 +17,16 @@ std::string nameOf(const System& system, std::size_t index) {
 /// particle of its springs, in directions that depend on `seed` alone.
 Points displaced(const System& system, Points positions, double share, unsigned seed);
 
-/// Names the first spring that is at a place where its condition is undefined, or so near to one
-/// that its torque says little, and that is not at rest there; empty when there is none.
-std::string undefinedSpring(const System& system, const Points& positions);
+/// The `distanceToUndefined` below which the torque of a spring says little.
+constexpr double kUndefined = 1e-6;
 
-/// The positions with the free particles of all such springs moved by `distance` [rad], each in a
-/// direction that depends on `seed` alone.
+/// Names the first spring that is nearer than `near` to a place where its condition is undefined,
+/// and not at rest there; empty when there is none.
+std::string undefinedSpring(const System& system, const Points& positions,
+                            double near = kUndefined);
+
+/// The positions with the free particles of all springs that are nearer than `kUndefined` moved by
+/// `distance` [rad], each in a direction that depends on `seed` alone.
 Points besideUndefined(const System& system, Points positions, double distance, unsigned seed);
 
 }  // namespace spherical_springs::core

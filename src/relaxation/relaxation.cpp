@@ -176,7 +176,11 @@ class Relaxation {
   }
 
   void giveUp() {
-    const std::string undefined = undefinedSpring(system_, result_.positions);
+    // Well beyond kUndefined rounding of positions may make the torque of a spring already.
+    constexpr double kFloor = 1e-4;
+    const bool at_floor = atRoundingFloor();
+    const std::string undefined =
+        undefinedSpring(system_, result_.positions, at_floor ? kFloor : kUndefined);
     std::string reason = descent_->whyStuck();
     if (options_.keep_orientation && guard_.tightest()) {
       reason = nameOf<SolidAngleSpring>(system_, *guard_.tightest()) + " would fold";
@@ -184,7 +188,7 @@ class Relaxation {
       reason = undefined + " has antipodal vertices, where its area is undefined";
     } else if (excess_ <= 1) {
       reason = "the torque is within the tolerance, but not at a minimum of the energy";
-    } else if (atRoundingFloor()) {
+    } else if (at_floor) {
       reason = "rounding lets no step lower the energy further";
     }
     result_.message = "stopped: " + reason + "; " + torqueLeft();

@@ -1,5 +1,7 @@
 #include "spherical_springs/springs/solid_angle.h"
 
+#include <cmath>
+
 #include "springs/skew.h"
 
 namespace spherical_springs::core {
@@ -20,9 +22,8 @@ void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points) {
   spring.rest_solid_angle = solidAngle(points[0], points[1], points[2]);
 }
 
-bool nearlyUndefined(const SolidAngleSpring&, const std::array<Vector3, 3>& points) {
-  constexpr double kNear = 1e-6;
-  return triangle(points[0], points[1], points[2]).squared_norm < kNear * kNear;
+double distanceToUndefined(const SolidAngleSpring&, const std::array<Vector3, 3>& points) {
+  return std::sqrt(triangle(points[0], points[1], points[2]).squared_norm);
 }
 
 Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points) {

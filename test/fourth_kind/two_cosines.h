@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "spherical_springs/range.h"
 #include "spherical_springs/springs/condition.h"
@@ -41,7 +42,9 @@ inline void rest(TwoCosinesSpring& spring, const FourPoints& p) {
   spring.rest_sum = sumOfCosines(p);
 }
 
-constexpr bool nearlyUndefined(const TwoCosinesSpring&, const FourPoints&) { return false; }
+constexpr double distanceToUndefined(const TwoCosinesSpring&, const FourPoints&) {
+  return std::numeric_limits<double>::infinity();
+}
 
 inline Condition<4> condition(const TwoCosinesSpring& spring, const FourPoints& p) {
   const Vector3 first = p[0].cross(p[1]), last = 2 * p[2].cross(p[3]);

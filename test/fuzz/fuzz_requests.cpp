@@ -117,7 +117,7 @@ class Requests {
     bool any = false;
     forEachKind([&](auto kind) {
       for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-        any = any || nearlyUndefined(spring, System::points(spring, positions));
+        any = any || distanceToUndefined(spring, System::points(spring, positions)) < 1e-6;
       }
     });
     return any;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "spherical_springs/range.h"
 #include "spherical_springs/springs/condition.h"
@@ -39,8 +40,10 @@ struct AngleSpring {
 /// Takes the present angle [rad] between two unit vectors as the rest angle.
 void rest(AngleSpring& spring, const std::array<Vector3, 2>& points);
 
-/// The angle is defined everywhere.
-constexpr bool nearlyUndefined(const AngleSpring&, const std::array<Vector3, 2>&) { return false; }
+/// Returns infinity, as the angle is defined everywhere.
+constexpr double distanceToUndefined(const AngleSpring&, const std::array<Vector3, 2>&) {
+  return std::numeric_limits<double>::infinity();
+}
 
 /// Returns C [rad] and its gradients at two unit vectors. Where they coincide or are antipodal the
 /// gradient is along the fixed axis of `arc`.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "spherical_springs/range.h"
 #include "spherical_springs/springs/condition.h"
@@ -48,9 +49,9 @@ double effectiveWidth(const OrientedAngleSpring& spring);
 /// angle, and is written into the spring.
 void rest(OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
 
-/// The signed angle is defined everywhere.
-constexpr bool nearlyUndefined(const OrientedAngleSpring&, const std::array<Vector3, 3>&) {
-  return false;
+/// Returns infinity, as the signed angle is defined everywhere.
+constexpr double distanceToUndefined(const OrientedAngleSpring&, const std::array<Vector3, 3>&) {
+  return std::numeric_limits<double>::infinity();
 }
 
 /// Returns C [rad] and its gradients at three unit vectors; where the first two coincide or are

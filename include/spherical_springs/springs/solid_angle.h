@@ -43,8 +43,10 @@ struct SolidAngleSpring {
 /// Takes the present solid angle [sr] of three unit vectors as the one at rest.
 void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
-/// Whether two vertices are within 1e-6 of antipodal, where torques grow without limit.
-bool nearlyUndefined(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
+/// Returns how far three unit vectors are from a place where the solid angle is undefined and
+/// torques grow without limit: for two vertices nearly antipodal, the arc [rad] that they lack,
+/// times the sine of the arc from the third vertex to either.
+double distanceToUndefined(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points);
 
 /// Returns C [sr] and its gradients at three unit vectors, by the formula of Oosterom and Strackee
 /// 1983. With an antipodal pair of vertices the area is undefined: it counts as 0, and the gradient
