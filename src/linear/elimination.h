@@ -20,7 +20,7 @@ bool eliminate(const FrontMatrix& front) {
   if (factor.info() != Eigen::Success) return false;
   if (front.rest_size == 0) return true;
   own.triangularView<Eigen::Lower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-  rest.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  rest.triangularView<Eigen::Lower>() = -below * below.transpose();
   return true;
 }
 

@@ -7,14 +7,15 @@ namespace spherical_springs::core {
 
 /// A symmetric matrix in parts, each stored by columns without gaps: `own` (own x own) and `rest`
 /// (rest x rest), of which the lower triangles count, and `below` (rest x own) between them.
+/// `rest` is output alone.
 struct FrontMatrix {
   double *own, *below, *rest;
   std::ptrdiff_t own_size, rest_size;
 };
 
 struct EliminationKernels {
-  /// Leaves the Cholesky factor of the first unknowns in `own` and `below`, and what remains of the
-  /// others in `rest`.
+  /// Leaves the Cholesky factor of the first unknowns in `own` and `below`, and what is to be added
+  /// to the matrix of the others in `rest`.
   /// @return whether `own` is positive definite; else the matrix is of no use.
   bool (*eliminate)(const FrontMatrix& front);
 };

@@ -35,7 +35,8 @@ MultifrontalCholesky::MultifrontalCholesky(const BlockPattern& pattern, int thre
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (rows[p] > enough) {
-      above_.push_back(p);
+      levels_.resize(std::max(levels_.size(), depths[p] + 1));
+      levels_[depths[p]].push_back(p);
     } else if (parent[p] == kNone || rows[parent[p]] > enough) {
       subtrees_.emplace_back(first[p], p + 1);
     }
@@ -55,7 +56,7 @@ void MultifrontalCholesky::layOut(const std::vector<std::size_t>& depths) {
     std::iota(numbers.begin(), numbers.end(), begin);
     layOutRests(numbers, depths);
   }
-  layOutRests(above_, depths);
+  layOutRestsOfLevels();
 }
 
 std::vector<MultifrontalCholesky::Run> MultifrontalCholesky::runsOf(const Part& child,
@@ -79,10 +80,7 @@ std::vector<MultifrontalCholesky::Run> MultifrontalCholesky::runsOf(const Part& 
 /// one when its own is on the other.
 void MultifrontalCholesky::layOutRests(const std::vector<std::size_t>& numbers,
                                        const std::vector<std::size_t>& depths) {
-  const auto sizeOf = [&](std::size_t p) {
-    const auto rows = static_cast<Eigen::Index>(2 * dissection_.parts[p].boundary.size());
-    return rows * rows;
-  };
+  const auto sizeOf = [&](std::size_t p) { return restSize(p) * restSize(p); };
   std::array<Eigen::Index, 2> heights = {}, highest = {};
   std::vector<Eigen::Index> places;
   for (const std::size_t p : numbers) {
@@ -98,10 +96,34 @@ void MultifrontalCholesky::layOutRests(const std::vector<std::size_t>& numbers,
   }
   double* room = remains_.emplace_back(highest[0] + highest[1]).data();
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto rows = static_cast<Eigen::Index>(2 * dissection_.parts[numbers[i]].boundary.size());
-    double* stack = depths[numbers[i]] % 2 == 0 ? room : room + highest[0];
-    new (&fronts_[numbers[i]].rest) Eigen::Map<Eigen::MatrixXd>(stack + places[i], rows, rows);
+    putRest(numbers[i], (depths[numbers[i]] % 2 == 0 ? room : room + highest[0]) + places[i]);
   }
+}
+
+/// Rests of a level stand side by side, those of even and of odd levels in the same room each.
+void MultifrontalCholesky::layOutRestsOfLevels() {
+  std::array<Eigen::Index, 2> highest = {};
+  for (std::size_t depth = 0; depth < levels_.size(); ++depth) {
+    Eigen::Index height = 0;
+    for (const std::size_t p : levels_[depth]) height += restSize(p) * restSize(p);
+    highest[depth % 2] = std::max(highest[depth % 2], height);
+  }
+  double* const room = remains_.emplace_back(highest[0] + highest[1]).data();
+  for (std::size_t depth = 0; depth < levels_.size(); ++depth) {
+    double* place = depth % 2 == 0 ? room : room + highest[0];
+    for (const std::size_t p : levels_[depth]) {
+      putRest(p, place);
+      place += restSize(p) * restSize(p);
+    }
+  }
+}
+
+Eigen::Index MultifrontalCholesky::restSize(std::size_t part) const {
+  return static_cast<Eigen::Index>(2 * dissection_.parts[part].boundary.size());
+}
+
+void MultifrontalCholesky::putRest(std::size_t part, double* place) {
+  new (&fronts_[part].rest) Eigen::Map<Eigen::MatrixXd>(place, restSize(part), restSize(part));
 }
 
 double MultifrontalCholesky::work() const {
@@ -142,10 +164,12 @@ void MultifrontalCholesky::assemble(const Blocks<double, 2>& values, Front& fron
   }
 }
 
-/// Adds what a child has left, run by run of the columns of its lower triangle.
-void MultifrontalCholesky::addChild(Front& front, const Front& child) {
+/// Adds what a child has left to the columns of the front's own unknowns, or to the others, run by
+/// run of the columns of the child's lower triangle.
+void MultifrontalCholesky::addChild(Front& front, const Front& child, bool own_columns) {
   for (std::size_t i = 0; i < child.runs.size(); ++i) {
     const Run& across = child.runs[i];
+    if (across.is_own != own_columns) continue;
     for (std::size_t j = i; j < child.runs.size(); ++j) {
       const Run& down = child.runs[j];
       auto& target = down.is_own ? front.own : front.below;
@@ -167,61 +191,94 @@ void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& val
   const Part& part = dissection_.parts[p];
   Front& front = fronts_[p];
   const auto own = 2 * static_cast<Eigen::Index>(part.end - part.first);
-  const auto rest = static_cast<Eigen::Index>(2 * part.boundary.size());
+  const Eigen::Index rest = restSize(p);
   front.own.setZero(own, own);
   front.below.setZero(rest, own);
-  for (Eigen::Index c = 0; c < rest; ++c) front.rest.col(c).tail(rest - c).setZero();
   assemble(values, front);
   front.definite = true;
   for (const std::uint32_t child : part.children) {
     front.definite = front.definite && fronts_[child].definite;
-    if (front.definite) addChild(front, fronts_[child]);
+    if (front.definite) addChild(front, fronts_[child], true);
   }
   if (!front.definite) return;
   front.definite = eliminationKernels().eliminate(
       {front.own.data(), front.below.data(), front.rest.data(), own, rest});
+  if (!front.definite) return;
+  for (const std::uint32_t child : part.children) addChild(front, fronts_[child], false);
+}
+
+/// Visits children before their parents.
+template <class Visitor>
+void MultifrontalCholesky::visitUpwards(const Visitor& visit) {
+  forOnThreads(static_cast<std::ptrdiff_t>(subtrees_.size()), threads_, [&](std::ptrdiff_t s) {
+    for (std::size_t p = subtrees_[s].first; p < subtrees_[s].second; ++p) visit(p);
+  });
+  for (std::size_t depth = levels_.size(); depth-- > 0;) visitLevel(levels_[depth], visit);
+}
+
+/// Visits parents before their children.
+template <class Visitor>
+void MultifrontalCholesky::visitDownwards(const Visitor& visit) {
+  for (const auto& level : levels_) visitLevel(level, visit);
+  forOnThreads(static_cast<std::ptrdiff_t>(subtrees_.size()), threads_, [&](std::ptrdiff_t s) {
+    for (std::size_t p = subtrees_[s].second; p-- > subtrees_[s].first;) visit(p);
+  });
+}
+
+template <class Visitor>
+void MultifrontalCholesky::visitLevel(const std::vector<std::size_t>& level, const Visitor& visit) {
+  forOnThreads(static_cast<std::ptrdiff_t>(level.size()), threads_,
+               [&](std::ptrdiff_t i) { visit(level[i]); });
 }
 
 bool MultifrontalCholesky::refresh(const Blocks<double, 2>& values) {
-  forOnThreads(static_cast<std::ptrdiff_t>(subtrees_.size()), threads_, [&](std::ptrdiff_t s) {
-    for (std::size_t p = subtrees_[s].first; p < subtrees_[s].second; ++p) factorise(p, values);
-  });
-  for (const std::size_t p : above_) factorise(p, values);
+  visitUpwards([&](std::size_t p) { factorise(p, values); });
   return std::all_of(fronts_.begin(), fronts_.end(), [](const Front& f) { return f.definite; });
 }
 
+/// Solves for a part's own unknowns, in `x`, and leaves to the parent what they take from those of
+/// its boundary.
+void MultifrontalCholesky::forwards(std::size_t p, Eigen::VectorXd& x) {
+  checkpoint_();
+  const Part& part = dissection_.parts[p];
+  Front& front = fronts_[p];
+  auto own = x.segment(2 * part.first, front.own.cols());
+  front.left.setZero(restSize(p));
+  for (const std::uint32_t child : part.children) {
+    for (const Run& run : fronts_[child].runs) {
+      const Eigen::Index size = 2 * (run.end - run.first);
+      const auto from = fronts_[child].left.segment(2 * run.first, size);
+      if (run.is_own) {
+        own.segment(2 * run.to, size) += from;
+      } else {
+        front.left.segment(2 * run.to, size) += from;
+      }
+    }
+  }
+  front.own.triangularView<Eigen::Lower>().solveInPlace(own);
+  front.left.noalias() -= front.below * own;
+}
+
+void MultifrontalCholesky::backwards(std::size_t p, Eigen::VectorXd& x) {
+  checkpoint_();
+  const Part& part = dissection_.parts[p];
+  Front& front = fronts_[p];
+  auto own = x.segment(2 * part.first, front.own.cols());
+  for (std::size_t k = 0; k < part.boundary.size(); ++k) {
+    front.left.segment<2>(2 * k) = x.segment<2>(2 * part.boundary[k]);
+  }
+  own.noalias() -= front.below.transpose() * front.left;
+  front.own.triangularView<Eigen::Lower>().transpose().solveInPlace(own);
+}
+
 void MultifrontalCholesky::apply(const VectorOf<double>& residual, VectorOf<double>& correction) {
-  const auto& parts = dissection_.parts;
-  std::size_t longest = 0;
-  for (const auto& part : parts) longest = std::max(longest, part.boundary.size());
   // Eigen's vectors do not survive it when there is no memory for another size.
-  Eigen::VectorXd x(residual.size()), gathered(2 * longest);
+  Eigen::VectorXd x(residual.size());
   for (std::size_t place = 0; place < dissection_.order.size(); ++place) {
     x.segment<2>(2 * place) = residual.segment<2>(2 * dissection_.order[place]);
   }
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    checkpoint_();
-    const auto own = fronts_[p].own.cols();
-    auto part = x.segment(2 * parts[p].first, own);
-    fronts_[p].own.triangularView<Eigen::Lower>().solveInPlace(part);
-    if (parts[p].boundary.empty()) continue;
-    gathered.head(fronts_[p].below.rows()).noalias() = fronts_[p].below * part;
-    for (std::size_t k = 0; k < parts[p].boundary.size(); ++k) {
-      x.segment<2>(2 * parts[p].boundary[k]) -= gathered.segment<2>(2 * k);
-    }
-  }
-  for (std::size_t p = parts.size(); p-- > 0;) {
-    checkpoint_();
-    const auto own = fronts_[p].own.cols();
-    auto part = x.segment(2 * parts[p].first, own);
-    if (!parts[p].boundary.empty()) {
-      for (std::size_t k = 0; k < parts[p].boundary.size(); ++k) {
-        gathered.segment<2>(2 * k) = x.segment<2>(2 * parts[p].boundary[k]);
-      }
-      part.noalias() -= fronts_[p].below.transpose() * gathered.head(fronts_[p].below.rows());
-    }
-    fronts_[p].own.triangularView<Eigen::Lower>().transpose().solveInPlace(part);
-  }
+  visitUpwards([&](std::size_t p) { forwards(p, x); });
+  visitDownwards([&](std::size_t p) { backwards(p, x); });
   correction.resize(residual.size());
   for (std::size_t place = 0; place < dissection_.order.size(); ++place) {
     correction.segment<2>(2 * dissection_.order[place]) = x.segment<2>(2 * place);

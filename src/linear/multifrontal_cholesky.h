@@ -48,25 +48,38 @@ class MultifrontalCholesky : public Preconditioner<double> {
     Eigen::Map<Eigen::MatrixXd> rest{nullptr, 0, 0};
     std::vector<Entry> entries;
     std::vector<Run> runs;  ///< of its boundary among the parent's rows
+    Eigen::VectorXd left;   ///< of a right-hand side, for the rows of its boundary
     bool definite = false;
   };
 
   void layOut(const std::vector<std::size_t>& depths);
   void layOutRests(const std::vector<std::size_t>& numbers, const std::vector<std::size_t>& depths);
+  void layOutRestsOfLevels();
+  Eigen::Index restSize(std::size_t part) const;
+  void putRest(std::size_t part, double* place);
+  template <class Visitor>
+  void visitUpwards(const Visitor& visit);
+  template <class Visitor>
+  void visitDownwards(const Visitor& visit);
+  template <class Visitor>
+  void visitLevel(const std::vector<std::size_t>& level, const Visitor& visit);
   void factorise(std::size_t part, const Blocks<double, 2>& values);
+  void forwards(std::size_t part, Eigen::VectorXd& x);
+  void backwards(std::size_t part, Eigen::VectorXd& x);
   void layOutEntries(const Part& part, Front& front) const;
   static void assemble(const Blocks<double, 2>& values, Front& front);
   static std::vector<Run> runsOf(const Part& child, const Part& parent);
-  static void addChild(Front& front, const Front& child);
+  static void addChild(Front& front, const Front& child, bool own_columns);
   static std::size_t positionOf(const Part& part, std::uint32_t place);
 
   const BlockPattern& pattern_;
   int threads_;
   Checkpoint checkpoint_;
   NestedDissection dissection_;
-  // Subtrees that threads may share, as ranges of parts; what is above them comes last.
+  // Subtrees that threads may share, as ranges of parts; the parts above them come after, level by
+  // level from the deepest, here by depth.
   std::vector<std::pair<std::size_t, std::size_t>> subtrees_;
-  std::vector<std::size_t> above_;
+  std::vector<std::vector<std::size_t>> levels_;
   std::vector<Front> fronts_;
   std::vector<Eigen::VectorXd> remains_;  // room of the fronts' rests, used again and again
 };

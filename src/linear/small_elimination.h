@@ -27,13 +27,16 @@ inline Lanes loadPart(const double* from, std::ptrdiff_t count) {
   return result;
 }
 
-/// Subtracts factors coefficients^T from a tile of `target` that is W columns wide and V registers
-/// of rows high. With kIsPart only the first `part` lanes of the last register are rows.
-template <int V, int W, bool kIsPart>
+enum class Target { read, zero };
+
+/// Subtracts factors coefficients^T from a tile of `target`, or from zero, that is W columns wide
+/// and V registers of rows high. With kIsPart only the first `part` lanes of the last register are
+/// rows.
+template <Target kTarget, int V, int W, bool kIsPart>
 inline void subtractTile(const Columns& factors, const Columns& coefficients, std::ptrdiff_t depth,
                          const Columns& target, std::ptrdiff_t part) {
-  Lanes sums[V][W];
-  for (int w = 0; w < W; ++w) {
+  Lanes sums[V][W] = {};
+  for (int w = 0; w < W && kTarget == Target::read; ++w) {
     for (int v = 0; v < V; ++v) {
       const double* from = target.at(v * kLanes, w);
       sums[v][w] = kIsPart ? loadPart(from, part) : load(from);
@@ -64,19 +67,22 @@ inline void subtractTile(const Columns& factors, const Columns& coefficients, st
   }
 }
 
-template <int W>
+template <Target kTarget, int W>
 inline void subtractColumns(const Columns& factors, const Columns& coefficients,
                             std::ptrdiff_t depth, const Columns& target, std::ptrdiff_t rows) {
   constexpr int kTall = 3;  // all that registers hold
   std::ptrdiff_t r = 0;
   for (; r + kTall * kLanes <= rows; r += kTall * kLanes) {
-    subtractTile<kTall, W, false>(factors.from(r, 0), coefficients, depth, target.from(r, 0), 0);
+    subtractTile<kTarget, kTall, W, false>(factors.from(r, 0), coefficients, depth,
+                                           target.from(r, 0), 0);
   }
   for (; r + kLanes <= rows; r += kLanes) {
-    subtractTile<1, W, false>(factors.from(r, 0), coefficients, depth, target.from(r, 0), 0);
+    subtractTile<kTarget, 1, W, false>(factors.from(r, 0), coefficients, depth, target.from(r, 0),
+                                       0);
   }
   if (r < rows) {
-    subtractTile<1, W, true>(factors.from(r, 0), coefficients, depth, target.from(r, 0), rows - r);
+    subtractTile<kTarget, 1, W, true>(factors.from(r, 0), coefficients, depth, target.from(r, 0),
+                                      rows - r);
   }
 }
 
@@ -120,8 +126,8 @@ template <int W>
 inline bool eliminateColumns(const FrontMatrix& front, std::ptrdiff_t j) {
   const Columns own = {front.own, front.own_size}, below = {front.below, front.rest_size};
   const Columns rows = own.from(j, 0), block = own.from(j, j);
-  subtractColumns<W>(rows, rows, j, block, front.own_size - j);
-  subtractColumns<W>(below, rows, j, below.from(0, j), front.rest_size);
+  subtractColumns<Target::read, W>(rows, rows, j, block, front.own_size - j);
+  subtractColumns<Target::read, W>(below, rows, j, below.from(0, j), front.rest_size);
   if (!factorise<W>(block)) return false;
   solveColumns<W>(block, block.from(W, 0), front.own_size - j - W);
   solveColumns<W>(block, below.from(0, j), front.rest_size);
@@ -139,12 +145,12 @@ bool eliminateSmall(const FrontMatrix& front) {
   }
   const Columns below = {front.below, front.rest_size}, rest = {front.rest, front.rest_size};
   for (j = 0; j + kWide <= front.rest_size; j += kWide) {
-    subtractColumns<kWide>(below.from(j, 0), below.from(j, 0), front.own_size, rest.from(j, j),
-                           front.rest_size - j);
+    subtractColumns<Target::zero, kWide>(below.from(j, 0), below.from(j, 0), front.own_size,
+                                         rest.from(j, j), front.rest_size - j);
   }
   for (; j < front.rest_size; ++j) {
-    subtractColumns<1>(below.from(j, 0), below.from(j, 0), front.own_size, rest.from(j, j),
-                       front.rest_size - j);
+    subtractColumns<Target::zero, 1>(below.from(j, 0), below.from(j, 0), front.own_size,
+                                     rest.from(j, j), front.rest_size - j);
   }
   return true;
 }

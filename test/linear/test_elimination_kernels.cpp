@@ -1,6 +1,7 @@
 // The kernels of every instruction set that this processor has against the definition.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "base/instruction_set.h"
@@ -36,25 +37,25 @@ struct Parts {
   Parts(const Eigen::MatrixXd& matrix, Eigen::Index own_size)
       : own(matrix.topLeftCorner(own_size, own_size)),
         below(matrix.bottomLeftCorner(matrix.rows() - own_size, own_size)),
-        rest(matrix.bottomRightCorner(matrix.rows() - own_size, matrix.rows() - own_size)) {}
+        rest(Eigen::MatrixXd::Constant(below.rows(), below.rows(), std::nan(""))) {}
   FrontMatrix view() { return {own.data(), below.data(), rest.data(), own.rows(), rest.rows()}; }
 
   Eigen::MatrixXd own, below, rest;
 };
 
-TEST(EliminationKernels, LeaveTheFactorAndTheSchurComplement) {
+TEST(EliminationKernels, LeaveTheFactorAndWhatItAddsToTheRest) {
   for (const EliminationKernels& kernels : kernelsHere()) {
     for (const auto& [own, rest] : {std::pair{1, 0}, {2, 4}, {7, 3}, {60, 100}, {131, 90}}) {
       const Eigen::MatrixXd matrix = randomDefinite(own + rest);
       Parts parts(matrix, own);
       ASSERT_TRUE(kernels.eliminate(parts.view()));
       const Eigen::MatrixXd factor = parts.own.triangularView<Eigen::Lower>();
-      const Eigen::MatrixXd schur = parts.rest.selfadjointView<Eigen::Lower>();
+      const Eigen::MatrixXd added = parts.rest.selfadjointView<Eigen::Lower>();
       const double rounding = 1e-13 * matrix.norm();
       const Parts was(matrix, own);
       EXPECT_LT((factor * factor.transpose() - was.own).norm(), rounding);
       EXPECT_LT((parts.below * factor.transpose() - was.below).norm(), rounding);
-      EXPECT_LT((parts.below * parts.below.transpose() + schur - was.rest).norm(), rounding);
+      EXPECT_LE((parts.below * parts.below.transpose() + added).norm(), rounding);
     }
   }
 }

@@ -133,7 +133,7 @@ TEST(BasinHopping, LeavesMinimaOfNewtonsMethod) {
   Points map = stuck.map;
   BasinHopping hopping(stuck.mesh.faces, stuck.shares, 642, 0, 2);
   double left = 1;
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < 12; ++round) {
     const double fall = hopping.hop(map);
     EXPECT_GE(fall, 0);
     left *= 1 - fall;
