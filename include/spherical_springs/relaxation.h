@@ -79,6 +79,9 @@ class Relaxer {
   RelaxationResult relax(const System& system, const Points& positions,
                          const RelaxationOptions& options);
 
+  /// Lets go of what is prepared for a start from the last result, and its memory.
+  void forget();
+
  private:
   std::unique_ptr<Newton> newton_;
   Points last_end_;

@@ -81,6 +81,9 @@ class Simulation {
 
   /// A number that changes with everything that moves or changes the scene.
   std::uint64_t revision() const { return revision_; }
+  /// A number that changes with the particles and springs that there are, what springs join and
+  /// what is pinned.
+  std::uint64_t topology() const { return topology_; }
 
   /// Offers an account that was made of the state at `revision`.
   /// @return the account of that state: the one there was, or the one offered, which is taken
@@ -104,7 +107,7 @@ class Simulation {
   std::shared_ptr<const Plan> earlier_plan_;  // of the same topology, with other parameters
   std::unique_ptr<Integrator> integrator_;
   std::shared_ptr<Account> account_;
-  std::uint64_t revision_ = 0;
+  std::uint64_t revision_ = 0, topology_ = 0;
 };
 
 }  // namespace spherical_springs::core

@@ -117,7 +117,13 @@ void Handlers::loadScene(const LoadScene::Request& request, Answer<LoadScene>& a
   auto file = core::readScene(path, limits_);
   answer.response.message = "loaded " + core::onOneLine(path);
   answer.reserve();
-  runner_.change([&](core::Simulation& s) { s.load(std::move(file)); });
+  runner_.change([&](core::Simulation& s) {
+    try {
+      s.load(std::move(file));
+    } catch (const std::invalid_argument& fault) {
+      throw std::invalid_argument(core::onOneLine(path) + " cannot be loaded: " + fault.what());
+    }
+  });
   news_.relaxed("");
   news_.tell(answer.response.message);
 }

@@ -39,7 +39,7 @@ SceneDirectory::SceneDirectory(const std::string& directory) : directory_(direct
 
 fs::path SceneDirectory::inside(const std::string& path) const {
   if (path.find('\0') != std::string::npos) {
-    throw std::invalid_argument("path has a zero byte; allowed: the name of a file");
+    refuse("path", path, "the name of a file, without a zero byte");
   }
   if (path.empty()) refuse("path", path, "the name of a file");
   try {

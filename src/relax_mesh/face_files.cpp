@@ -25,7 +25,8 @@ Values readDensities(std::istream& in, Eigen::Index faces, const core::Checkpoin
   }
   if (count != faces) {
     throw std::invalid_argument("it has " + std::to_string(count) +
-                                " numbers; allowed: " + std::to_string(faces) + ", one a face");
+                                (count == 1 ? " number" : " numbers") +
+                                "; allowed: " + std::to_string(faces) + ", one a face");
   }
   return densities;
 }

@@ -46,7 +46,8 @@ class Writing {
     std::string faults = faults_;
     if (!interrupted_.empty()) add(faults, interrupted_, "; ");
     if (faults.empty()) return;
-    throw std::runtime_error(faults + "; written: " + (written_.empty() ? "no file" : written_));
+    throw std::runtime_error(
+        faults + (written_.empty() ? "; no file has been written" : "; written: " + written_));
   }
 
  private:

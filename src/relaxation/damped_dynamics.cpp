@@ -60,7 +60,8 @@ void DampedDynamics::keepOrientation(const Points& from) {
 
 bool DampedDynamics::iterate() {
   constexpr std::uint64_t kStepLasts = 50;
-  constexpr std::uint64_t kPatience = 20000;  // steps without a smaller excess
+  constexpr std::uint64_t kPatience = 20000;  // steps without an excess smaller by this:
+  constexpr double kSmaller = 0.999;
   if (state_.steps % kStepLasts == 0) {
     chooseTimeStep();
     allowed_ = allowedTorques(system_, state_.positions, limit_);
@@ -76,7 +77,7 @@ bool DampedDynamics::iterate() {
     if (guard_) keepOrientation(from);
   }
   measure();
-  if (excess_ < least_excess_) {
+  if (excess_ < kSmaller * least_excess_) {
     least_excess_ = excess_;
     least_excess_step_ = state_.steps;
   }

@@ -18,7 +18,7 @@ std::string nameOf(const System& system, std::size_t index) {
 Points displaced(const System& system, Points positions, double share, unsigned seed);
 
 /// The `distanceToUndefined` below which the torque of a spring says little.
-constexpr double kUndefined = 1e-6;
+inline constexpr double kUndefined = 1e-6;
 
 /// Names the first spring that is nearer than `near` to a place where its condition is undefined,
 /// and not at rest there; empty when there is none.

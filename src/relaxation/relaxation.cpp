@@ -68,12 +68,13 @@ class Relaxation {
 
   RelaxationResult run() {
     descendToMinimum();
-    result_.positions = aligned(system_, start_, std::move(result_.positions), calm_);
+    turnBack();
     return std::move(result_);
   }
 
  private:
   enum class Outcome { within_limit, stuck, ended };
+  static constexpr double kEnergyRounding = 1e-13;  // of an energy, a sum over all springs
 
   void descendToMinimum() {
     constexpr unsigned kAttempts = 20;
@@ -82,18 +83,25 @@ class Relaxation {
     for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
       const Outcome outcome = descend();
       if (outcome == Outcome::ended) return;
-      if (outcome == Outcome::within_limit) keep();
+      const bool at_minimum = outcome == Outcome::within_limit && mayBeTheEnd();
+      if (at_minimum) keep();
       if (!undefinedSpring(system_, result_.positions).empty()) {
         if (leaveUndefined(attempt)) continue;
         break;
       }
-      if (outcome == Outcome::within_limit) {
+      if (at_minimum) {
         if (leaveSaddle()) continue;
         result_.converged = true;
         result_.message = "converged";
         return;
       }
-      if (outcome == Outcome::stuck && (atRoundingFloor() || ++stuck > kStuckAttempts)) break;
+      if (outcome == Outcome::stuck) {
+        if (atRoundingFloor() || ++stuck > kStuckAttempts) break;
+        if (stuck == 1) {  // a descent that forgets how it came here may get further
+          descent_->place(descent_->positions());
+          continue;
+        }
+      }
       if (options_.keep_orientation) break;
       descent_->place(displaced(system_, descent_->positions(), shareOf(attempt), attempt));
     }
@@ -135,18 +143,33 @@ class Relaxation {
     return Outcome::within_limit;
   }
 
-  /// Whether the torque is what rounding of the positions makes of the springs' stiffness.
+  /// Whether the torque on each particle is what rounding of the positions makes of the stiffness
+  /// that it feels.
   bool atRoundingFloor() const {
     constexpr double kRounding = 1e-11;
-    return descent_->maxTorque() <
-           kRounding * particleStiffness(system_, descent_->positions()).maxCoeff();
+    const Points positions = descent_->positions();
+    const Eigen::VectorXd stiffness = particleStiffness(system_, positions);
+    System::Workspace workspace;
+    system_.evaluate(positions, workspace);
+    for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+      if (system_.pinned(i)) continue;
+      if (workspace.torques.col(i).norm() >= kRounding * stiffness[i]) return false;
+    }
+    return true;
+  }
+
+  /// Whether the descent is no higher than what is kept, but for rounding. The energy where a
+  /// spring is undefined is a convention, which nothing need be below.
+  bool mayBeTheEnd() const {
+    if (descent_->value() <= (1 + kEnergyRounding) * result_.energy_after) return true;
+    return !undefinedSpring(system_, result_.positions).empty() &&
+           undefinedSpring(system_, descent_->positions()).empty();
   }
 
   /// Lower in energy than what is kept or, where rounding hides that, in torque.
   bool isBetter() const {
-    constexpr double kRounding = 1e-13;
     const double drop = result_.energy_after - descent_->value();
-    if (std::abs(drop) > kRounding * result_.energy_after) return drop > 0;
+    if (std::abs(drop) > kEnergyRounding * result_.energy_after) return drop > 0;
     return descent_->excess() < excess_;
   }
 
@@ -173,6 +196,21 @@ class Relaxation {
     const double way = std::log(first_excess_);
     const double gone = std::log(first_excess_ / std::max(excess_, 1.));
     return way > 0 && std::isfinite(way) ? std::clamp(gone / way, 0., 1.) : 0;
+  }
+
+  /// Turns the whole back to where it was, unless that raises the energy: nearly antipodal vertices
+  /// make much of the rounding of a turn.
+  void turnBack() {
+    Points turned = aligned(system_, start_, result_.positions, calm_);
+    const double reached = system_.potential(result_.positions).total();
+    const double after_turn = system_.potential(turned).total();
+    result_.energy_before = system_.potential(start_).total();
+    constexpr double kShare = 1e-6;  // of the drop
+    const double allowed =
+        std::max(kEnergyRounding * reached, kShare * (result_.energy_before - reached));
+    const bool turns = after_turn - reached <= allowed;
+    if (turns) result_.positions = std::move(turned);
+    result_.energy_after = turns ? after_turn : reached;
   }
 
   void giveUp() {
@@ -246,6 +284,11 @@ RelaxationResult unrelaxed(const System& system, const Points& positions) {
 
 Relaxer::Relaxer() = default;
 Relaxer::~Relaxer() = default;
+
+void Relaxer::forget() {
+  newton_.reset();
+  last_end_ = Points();
+}
 
 RelaxationResult Relaxer::relax(const System& system, const Points& positions,
                                 const RelaxationOptions& options) {

@@ -71,8 +71,12 @@ inline void checkParticle(Particle& particle) {
   if (!particle.position.allFinite() || particle.position.isZero(0)) {
     refuse("position", particle.position, "any finite non-zero vector");
   }
-  if (!(particle.angular_velocity.array().abs() <= kFastest).all()) {
-    refuse("angular_velocity", particle.angular_velocity, "finite, up to 1e100 [rad/s]");
+  // Its length and not its parts: these grow where a particle turns, or the part along the position
+  // is dropped, and what a scene has come to must be taken again.
+  constexpr double kRounding = 1e-9;
+  if (!particle.angular_velocity.allFinite() ||
+      particle.angular_velocity.stableNorm() > (1 + kRounding) * kFastest) {
+    refuse("angular_velocity", particle.angular_velocity, "finite, of length up to 1e100 [rad/s]");
   }
   if (particle.mass == 0) particle.mass = 1;
   checkFields(particle);

@@ -46,6 +46,7 @@ class Fields {
   }
   /// Whoever takes the parts of the field that was begun, it is not left at the end.
   void leaveToOthers() { present_->taken = true; }
+  const std::string& nameOfPresent() const { return present_->name; }
   void beginList() {
     present_->is_list = true;
     present_->list.clear();
@@ -83,7 +84,9 @@ class Fields {
   template <std::size_t N>
   void take(const char* field, std::array<std::uint32_t, N>& value) {
     takeList(field, N, kIds, [&](const std::vector<Json>& list) {
-      for (std::size_t i = 0; i < N; ++i) value[i] = toId(list[i], field);
+      for (std::size_t i = 0; i < N; ++i) {
+        value[i] = toId(list[i], field + ("[" + std::to_string(i) + "]"));
+      }
     });
   }
 
@@ -143,13 +146,13 @@ class Fields {
     return found == end ? nullptr : &*found;
   }
 
-  std::uint32_t toId(const Json& json, const char* field) const {
+  std::uint32_t toId(const Json& json, const std::string& field) const {
     const double id = json.is_number() ? json.get<double>() : -1;
     if (id < 0 || id > kLargestId || id != std::floor(id)) refuse(field, json, kIds);
     return static_cast<std::uint32_t>(id);
   }
 
-  [[noreturn]] void refuse(const char* field, const Json& json, const char* allowed) const {
+  [[noreturn]] void refuse(const std::string& field, const Json& json, const char* allowed) const {
     throw fault(name_, field, json, allowed);
   }
 

@@ -116,7 +116,9 @@ class SceneEvents {
     scene_.take("time", time);
     scene_.requireNothingLeft();
     requireFormat(format);
-    requireInside(Range{0, kLargest, "0 to 1e30 [s]"}, time, "time");
+    // So late that no number of steps makes it later: what is saved is taken again.
+    constexpr double kLatest = 1e300;
+    requireInside(Range{0, kLatest, "0 to 1e300 [s]"}, time, "time");
     return time;
   }
 
@@ -151,8 +153,9 @@ class SceneEvents {
   [[noreturn]] static void refuseOther() {
     throw std::invalid_argument("the scene is not an object");
   }
-  [[noreturn]] static void refuseNesting() {
-    throw std::invalid_argument("lists in lists, or objects, where values should be");
+  [[noreturn]] void refuseNesting() const {
+    throw std::invalid_argument(nameOfItem() + "." + item_.nameOfPresent() +
+                                " has a list or an object inside; allowed: values");
   }
 
   const CountingBuffer& source_;

@@ -166,6 +166,11 @@ struct Runner::Work {
     changed.notify_all();
   }
 
+  bool isFinished() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return finished;
+  }
+
   void abandon() {
     const std::lock_guard<std::mutex> lock(mutex);
     abandoned = true;
@@ -201,7 +206,13 @@ bool Runner::awaitLastWorker() {
     if (!last_work_->finished) return false;
   }
   worker_.join();
+  last_work_.reset();
   return true;
+}
+
+/// To be called while no relaxation is under way; one that was cancelled may still have its worker.
+void Runner::forgetRelaxations() {
+  if (!worker_.joinable()) relaxer_.forget();
 }
 
 RelaxationResult Runner::relax(const RelaxationOptions& options) {
@@ -218,6 +229,7 @@ RelaxationResult Runner::relax(const RelaxationOptions& options) {
       work->abandon();
       throw;
     }
+    if (work->isFinished()) awaitLastWorker();
   } else {
     result = work->cancelled(nullptr);
   }

@@ -66,6 +66,7 @@ class Runner {
   auto change(const Change& change) {
     const std::lock_guard<FairMutex> lock(mutex_);
     requireIdle();
+    const Memory memory(*this);
     return change(simulation_);
   }
 
@@ -114,10 +115,26 @@ class Runner {
   class Busy;
   struct Work;
 
+  /// Lets go of what is prepared for further relaxations where these will be of something else.
+  class Memory {
+   public:
+    explicit Memory(Runner& runner) : runner_(runner), topology_(runner.simulation_.topology()) {}
+    ~Memory() {
+      if (runner_.simulation_.topology() != topology_) runner_.forgetRelaxations();
+    }
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+
+   private:
+    Runner& runner_;
+    const std::uint64_t topology_;
+  };
+
   void requireIdle() const;
   Activity activity() const;
   std::shared_ptr<Work> beginning(const RelaxationOptions& options);
   bool awaitLastWorker();
+  void forgetRelaxations();
   RelaxationResult await(Work& work);
   void show(const std::shared_ptr<const RelaxationResult>& best, double fraction);
   void settle(const Points& positions);
@@ -139,7 +156,8 @@ class Runner {
 
   std::atomic<bool> cancelled_{false};  // set under control_
 
-  // Used by the one caller whose relaxation is under way, and by its worker.
+  // Used by the one caller whose relaxation is under way, and by its worker; and by changes while
+  // there is neither.
   Relaxer relaxer_;
   std::shared_ptr<Work> last_work_;
   std::thread worker_;

@@ -63,6 +63,7 @@ void Simulation::parametersChanged() {
 void Simulation::topologyChanged() {
   parametersChanged();
   earlier_plan_.reset();
+  ++topology_;
 }
 
 std::vector<std::uint32_t> Simulation::addParticles(std::vector<Particle> particles) {

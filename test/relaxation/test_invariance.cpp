@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <cmath>
+#include <string>
+#include <vector>
 
 #include "spherical_springs/relaxation.h"
 #include "support/relaxation_scenes.h"
@@ -39,6 +42,56 @@ TEST(Relaxed, HasNotTurnedAsAWhole) {
     const auto result = relaxed(scene, start);
     EXPECT_GT((result.positions - start).norm(), 0.1);
     EXPECT_LT(netTurn(start, result.positions), 1e-12);
+  }
+}
+
+/// Few particles and many springs, of stiffness over eight decades: many end near antipodal
+/// vertices.
+Scene crowdedScene(unsigned seed) {
+  testing::Random random(seed);
+  std::vector<Particle> particles(9);
+  for (Particle& particle : particles) particle = testing::particleAt(random.unitVector());
+  SpringLists springs;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    for (int i = 0; i < 11; ++i) {
+      auto spring = random.spring<Spring>(random.distinctBelow<Spring::kParticles>(9));
+      spring.stiffness = std::pow(10, random.between(-4, 4));
+      springs.get<Spring>().push_back(spring);
+    }
+  });
+  return testing::sceneOf(particles, springs);
+}
+
+class Crowded : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Crowded, ::testing::Values("newton", "dynamics", "fire"));
+
+TEST_P(Crowded, NeverEndsAboveItsStartAndTellsTheEnergiesOfItsPlaces) {
+  RelaxationOptions options;
+  options.method = relaxationMethod(GetParam());
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const System system(crowdedScene(seed), {});
+    Points positions = positionsOf(crowdedScene(seed));
+    for (int round = 0; round < 2; ++round) {
+      const auto result = relax(system, positions, options);
+      EXPECT_EQ(result.energy_before, system.potential(positions).total()) << seed;
+      EXPECT_EQ(result.energy_after, system.potential(result.positions).total()) << seed;
+      EXPECT_LE(result.energy_after, (1 + 1e-12) * result.energy_before) << seed << result.message;
+      positions = result.positions;
+    }
+  }
+}
+
+TEST_P(Crowded, IsAtTheFloorOfRoundingWhereItSaysSo) {
+  RelaxationOptions options;
+  options.method = relaxationMethod(GetParam());
+  options.tolerance = 1e-18;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const System system(crowdedScene(seed), {});
+    const auto result = relax(system, positionsOf(crowdedScene(seed)), options);
+    if (result.message.find("rounding") == std::string::npos) continue;
+    const auto again = relax(system, result.positions, options);
+    EXPECT_GT(again.energy_after, (1 - 1e-9) * result.energy_after) << seed << result.message;
   }
 }
 

@@ -64,6 +64,18 @@ TEST_F(SceneFiles, ReadBackToTheLastBit) {
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1) << "nothing is left beside";
 }
 
+TEST_F(SceneFiles, AreTakenAgainHoweverFastAndLateTheirScenesAre) {
+  Particle particle = testing::particleAt({0.3, 0.2, 1});
+  particle.angular_velocity = 1e100 * Vector3(1, -1, 1).normalized();
+  Scene scene;
+  scene.addParticles({particle});
+  writeScene(path_, scene, 1.0000000000000004e30);
+  const SceneFile file = readScene(path_, {});
+  EXPECT_EQ(file.time, 1.0000000000000004e30);
+  EXPECT_EQ(file.scene.particles().item(0).angular_velocity,
+            scene.particles().item(0).angular_velocity);
+}
+
 TEST_F(SceneFiles, ReadBackNumbersOfEveryForm) {
   const double numbers[] = {-0., 1, 1e30, 1e-300, 5e-324, 0.1, 123456789, 1. / 3, 1e22, -2.5e-7};
   for (const double number : numbers) {

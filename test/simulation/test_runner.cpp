@@ -202,6 +202,16 @@ TEST(Runner, ShowsARelaxationUnderWayWithoutTouchingTheScene) {
   answer.get();
 }
 
+TEST(Runner, KeepsNothingOfASceneThatWasRelaxedAndCleared) {
+  Runner runner({}, false);
+  fill(runner, testing::randomScene(3, 20, 30));
+  const std::weak_ptr<const System> system = runner.snapshot().plan->system();
+  runner.relax({});
+  EXPECT_FALSE(system.expired());
+  runner.change([](Simulation& s) { s.clear(); });
+  EXPECT_TRUE(system.expired());
+}
+
 TEST(Runner, ABadRequestToRelaxChangesNothing) {
   Runner runner({}, false);
   fill(runner, testing::randomScene(3, 10, 10, 0, 1));
