@@ -100,7 +100,8 @@ void MultifrontalCholesky::layOutRests(const std::vector<std::size_t>& numbers,
   }
 }
 
-/// Rests of a level stand side by side, those of even and of odd levels in the same room each.
+/// The rests of a level lie side by side. Even levels share one piece of memory and odd levels
+/// another, as a level is read only while the one above it is written.
 void MultifrontalCholesky::layOutRestsOfLevels() {
   std::array<Eigen::Index, 2> highest = {};
   for (std::size_t depth = 0; depth < levels_.size(); ++depth) {

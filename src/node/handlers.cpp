@@ -3,6 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
+#include <stdexcept>
 #include <utility>
 
 #include "node/conversion.h"

@@ -60,8 +60,8 @@ void DampedDynamics::keepOrientation(const Points& from) {
 
 bool DampedDynamics::iterate() {
   constexpr std::uint64_t kStepLasts = 50;
-  constexpr std::uint64_t kPatience = 20000;  // steps without an excess smaller by this:
-  constexpr double kSmaller = 0.999;
+  constexpr std::uint64_t kPatience = 20000;  // steps in which the excess must fall
+  constexpr double kSmaller = 0.999;          // to this share at least
   if (state_.steps % kStepLasts == 0) {
     chooseTimeStep();
     allowed_ = allowedTorques(system_, state_.positions, limit_);

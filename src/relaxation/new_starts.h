@@ -25,8 +25,8 @@ inline constexpr double kUndefined = 1e-6;
 std::string undefinedSpring(const System& system, const Points& positions,
                             double near = kUndefined);
 
-/// The positions with the free particles of all springs that are nearer than `kUndefined` moved by
-/// `distance` [rad], each in a direction that depends on `seed` alone.
+/// Returns the positions with the free particles of all springs that are nearer than `kUndefined`
+/// moved by `distance` [rad], each in a direction that depends on `seed` alone.
 Points besideUndefined(const System& system, Points positions, double distance, unsigned seed);
 
 }  // namespace spherical_springs::core

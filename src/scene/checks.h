@@ -71,8 +71,8 @@ inline void checkParticle(Particle& particle) {
   if (!particle.position.allFinite() || particle.position.isZero(0)) {
     refuse("position", particle.position, "any finite non-zero vector");
   }
-  // Its length and not its parts: these grow where a particle turns, or the part along the position
-  // is dropped, and what a scene has come to must be taken again.
+  // The length is bounded, not the components: those grow when a particle turns or the part along
+  // its position is dropped, and a scene that was saved must be accepted again.
   constexpr double kRounding = 1e-9;
   if (!particle.angular_velocity.allFinite() ||
       particle.angular_velocity.stableNorm() > (1 + kRounding) * kFastest) {

@@ -116,7 +116,7 @@ class SceneEvents {
     scene_.take("time", time);
     scene_.requireNothingLeft();
     requireFormat(format);
-    // So late that no number of steps makes it later: what is saved is taken again.
+    // No number of steps changes a time this large, so that every scene that was saved is accepted.
     constexpr double kLatest = 1e300;
     requireInside(Range{0, kLatest, "0 to 1e300 [s]"}, time, "time");
     return time;
