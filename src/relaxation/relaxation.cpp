@@ -10,10 +10,9 @@
 #include "relaxation/fire.h"
 #include "relaxation/new_starts.h"
 #include "relaxation/newton.h"
-#include "relaxation/particle_stiffness.h"
 #include "relaxation/torque_limit.h"
+#include "relaxation/turn_back.h"
 #include "spherical_springs/range.h"
-#include "system/alignment.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -68,13 +67,12 @@ class Relaxation {
 
   RelaxationResult run() {
     descendToMinimum();
-    turnBack();
+    turnBack(system_, start_, calm_, result_);
     return std::move(result_);
   }
 
  private:
   enum class Outcome { within_limit, stuck, ended };
-  static constexpr double kEnergyRounding = 1e-13;  // of an energy, a sum over all springs
 
   void descendToMinimum() {
     constexpr unsigned kAttempts = 20;
@@ -96,8 +94,8 @@ class Relaxation {
         return;
       }
       if (outcome == Outcome::stuck) {
-        if (atRoundingFloor() || ++stuck > kStuckAttempts) break;
-        if (stuck == 1) {  // a descent that forgets how it came here may get further
+        if (atRoundingFloor(descent_->positions()) || ++stuck > kStuckAttempts) break;
+        if (stuck == 1) {  // without what it has learnt on the way a descent may get further
           descent_->place(descent_->positions());
           continue;
         }
@@ -145,15 +143,14 @@ class Relaxation {
 
   /// Whether the torque on each particle is what rounding of the positions makes of the stiffness
   /// that it feels.
-  bool atRoundingFloor() const {
+  bool atRoundingFloor(const Points& positions) const {
     constexpr double kRounding = 1e-11;
-    const Points positions = descent_->positions();
-    const Eigen::VectorXd stiffness = particleStiffness(system_, positions);
+    const Eigen::VectorXd stiffness = feltStiffness(system_, positions);
     System::Workspace workspace;
     system_.evaluate(positions, workspace);
     for (Eigen::Index i = 0; i < positions.cols(); ++i) {
       if (system_.pinned(i)) continue;
-      if (workspace.torques.col(i).norm() >= kRounding * stiffness[i]) return false;
+      if (workspace.torques.col(i).norm() > kRounding * stiffness[i]) return false;
     }
     return true;
   }
@@ -198,25 +195,10 @@ class Relaxation {
     return way > 0 && std::isfinite(way) ? std::clamp(gone / way, 0., 1.) : 0;
   }
 
-  /// Turns the whole back to where it was, unless that raises the energy: nearly antipodal vertices
-  /// make much of the rounding of a turn.
-  void turnBack() {
-    Points turned = aligned(system_, start_, result_.positions, calm_);
-    const double reached = system_.potential(result_.positions).total();
-    const double after_turn = system_.potential(turned).total();
-    result_.energy_before = system_.potential(start_).total();
-    constexpr double kShare = 1e-6;  // of the drop
-    const double allowed =
-        std::max(kEnergyRounding * reached, kShare * (result_.energy_before - reached));
-    const bool turns = after_turn - reached <= allowed;
-    if (turns) result_.positions = std::move(turned);
-    result_.energy_after = turns ? after_turn : reached;
-  }
-
   void giveUp() {
-    // Well beyond kUndefined rounding of positions may make the torque of a spring already.
+    // Rounding of the positions rules the torque of a stiff spring well before kUndefined.
     constexpr double kFloor = 1e-4;
-    const bool at_floor = atRoundingFloor();
+    const bool at_floor = atRoundingFloor(result_.positions);
     const std::string undefined =
         undefinedSpring(system_, result_.positions, at_floor ? kFloor : kUndefined);
     std::string reason = descent_->whyStuck();

@@ -6,8 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "relaxation/turn_back.h"
 #include "spherical_springs/range.h"
-#include "system/alignment.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -179,7 +179,7 @@ struct Runner::Work {
   /// The answer of a relaxation that was cancelled when it had come to `reached`; null: nowhere.
   RelaxationResult cancelled(const std::shared_ptr<const RelaxationResult>& reached) const {
     RelaxationResult answer = reached ? *reached : unrelaxed(*system, start);
-    answer.positions = aligned(*system, start, std::move(answer.positions));
+    turnBack(*system, start, {}, answer);
     answer.message = "cancelled; largest torque " + toText(answer.max_torque) + " N m";
     return answer;
   }

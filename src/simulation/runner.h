@@ -66,7 +66,7 @@ class Runner {
   auto change(const Change& change) {
     const std::lock_guard<FairMutex> lock(mutex_);
     requireIdle();
-    const Memory memory(*this);
+    const TopologyWatch watch(*this);
     return change(simulation_);
   }
 
@@ -115,15 +115,16 @@ class Runner {
   class Busy;
   struct Work;
 
-  /// Lets go of what is prepared for further relaxations where these will be of something else.
-  class Memory {
+  /// Lets go of what is prepared for further relaxations if a change alters the topology.
+  class TopologyWatch {
    public:
-    explicit Memory(Runner& runner) : runner_(runner), topology_(runner.simulation_.topology()) {}
-    ~Memory() {
+    explicit TopologyWatch(Runner& runner)
+        : runner_(runner), topology_(runner.simulation_.topology()) {}
+    ~TopologyWatch() {
       if (runner_.simulation_.topology() != topology_) runner_.forgetRelaxations();
     }
-    Memory(const Memory&) = delete;
-    Memory& operator=(const Memory&) = delete;
+    TopologyWatch(const TopologyWatch&) = delete;
+    TopologyWatch& operator=(const TopologyWatch&) = delete;
 
    private:
     Runner& runner_;

@@ -86,16 +86,15 @@ TEST_P(Crowded, NeverEndsAboveItsStartAndTellsTheEnergiesOfItsPlaces) {
   }
 }
 
-TEST_P(Crowded, IsAtTheFloorOfRoundingWhereItSaysSo) {
-  RelaxationOptions options;
-  options.method = relaxationMethod(GetParam());
-  options.tolerance = 1e-18;
-  for (unsigned seed = 0; seed < seeds(); ++seed) {
+// In these scenes a soft particle was left with a torque that is rounding for a stiff one.
+TEST(Relaxed, SaysThatRoundingEndsItOnlyWhereItDoes) {
+  for (const unsigned seed : {63u, 90u}) {
     const System system(crowdedScene(seed), {});
-    const auto result = relax(system, positionsOf(crowdedScene(seed)), options);
+    const auto result = relax(system, positionsOf(crowdedScene(seed)), {});
     if (result.message.find("rounding") == std::string::npos) continue;
-    const auto again = relax(system, result.positions, options);
-    EXPECT_GT(again.energy_after, (1 - 1e-6) * result.energy_after) << seed << result.message;
+    const auto again = relax(system, result.positions, {});
+    EXPECT_FALSE(again.converged) << seed << result.message;
+    EXPECT_GT(again.energy_after, (1 - 1e-6) * result.energy_after) << seed;
   }
 }
 
