@@ -30,14 +30,14 @@ class MeshTest(NodeTest):
         self.assertEqual((0, ''), (outcome.code, outcome.error))
         return outcome
 
-    def assert_is_map(self, faces, weights, outcome, path=None, precision=1e-9):
+    def assert_is_map(self, faces, weights, outcome, path=None):
         """Check the sphere that was written, and what was said of it. Return log area ratios."""
         sphere, same_faces = mesh.read_obj(path or self.path('sphere.obj'))
         np.testing.assert_array_equal(faces, same_faces)
         np.testing.assert_allclose(np.linalg.norm(sphere, axis=1), 1, atol=1e-14)
         areas = solid_angles(*np.moveaxis(sphere[faces], 1, 0))
         self.assertGreater(areas.min(), 0)
-        self.assertAlmostEqual(4 * np.pi, areas.sum(), delta=precision)
+        self.assertAlmostEqual(4 * np.pi, areas.sum(), delta=1e-9)
         ratios = np.log(areas / weights * weights.sum() / (4 * np.pi))
         figures = outcome.figures('after')
         for name, value in {'spread': ratios.std(), 'mean': np.abs(ratios).mean(),

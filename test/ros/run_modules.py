@@ -26,10 +26,28 @@ def is_skipped(case):
     return any(getattr(part, '__unittest_skip__', False) for part in (case, method))
 
 
+class Suite(unittest.TestSuite):
+    """rosunit writes only what has been started: an error in setUpClass would be without words."""
+
+    def run(self, result, debug=False):
+        add_error = result.addError
+
+        def add_and_show_error(test, error):
+            is_case = isinstance(test, unittest.TestCase)
+            if not is_case:
+                result.startTest(test)
+            add_error(test, error)
+            if not is_case:
+                result.stopTest(test)
+
+        result.addError = add_and_show_error
+        return super().run(result, debug)
+
+
 def suite():
     """Without cases that are skipped: rosunit would count them as passed."""
     loaded = unittest.defaultTestLoader.loadTestsFromNames(MODULES)
-    return unittest.TestSuite(case for case in cases(loaded) if not is_skipped(case))
+    return Suite(case for case in cases(loaded) if not is_skipped(case))
 
 
 if __name__ == '__main__':

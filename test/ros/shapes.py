@@ -11,9 +11,7 @@ from node_client import PACKAGE
 sys.path.append(os.path.join(rospkg.RosPack().get_path(PACKAGE), 'scripts', 'demo_parts'))
 import mesh  # noqa: E402
 
-# No map of it has all areas right, so that one is sought for all the time that there is.
-SLOW = (np.array([(3, 0, 0), (0, 2, 0), (0, 0, 4), (50, 50, 50)], float),
-        np.array([(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]))
+CORNERS = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]
 TETRAHEDRON = np.array([(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])
 
 

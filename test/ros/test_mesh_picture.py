@@ -8,10 +8,9 @@ import rospkg
 
 from mesh_test import MeshTest
 from node_client import LONG, PACKAGE
-from shapes import TETRAHEDRON, mesh, obj
+from shapes import CORNERS, TETRAHEDRON, mesh, obj
 
 PROGRAM = os.path.join(rospkg.RosPack().get_path(PACKAGE), 'scripts', 'mesh_picture')
-CORNERS = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]
 SURFACE = obj(CORNERS, TETRAHEDRON)
 
 
