@@ -54,7 +54,10 @@ void DampedDynamics::keepOrientation(const Points& from) {
   Eigen::VectorXd hold = Eigen::VectorXd::Zero(from.cols());
   const double share = guard_->allowedShare(from, moves, hold);
   if (share == 1) return;
-  state_.positions = (from + share * moves).colwise().normalized();
+  for (Eigen::Index i = 0; i < moves.cols(); ++i) {
+    if (moves.col(i).isZero(0)) continue;  // rounding of the length would move it
+    state_.positions.col(i) = (from.col(i) + share * moves.col(i)).normalized();
+  }
   stop();
 }
 

@@ -61,6 +61,7 @@ void Fire::move() {
     share = guard_->allowedShare(positions_, moves, hold);
   }
   parallelFor(positions_.cols(), system_.threads(), [&](std::ptrdiff_t i) {
+    if (moves.col(i).isZero(0)) return;  // rounding of the length would move it
     positions_.col(i) = (positions_.col(i) + share * moves.col(i)).normalized();
     velocities_.col(i) -= positions_.col(i).dot(velocities_.col(i)) * positions_.col(i);
   });

@@ -23,23 +23,34 @@ Eigen::VectorXd reach(const System& system, const Points& positions) {
   return (longest.array() > 0).select(longest, 1);
 }
 
+/// Whether the torque on the free ends of a spring is small beside its stiffness. That of one which
+/// is nearly undefined is mostly rounding unless the spring is at rest, and so is what others do
+/// against it.
+template <class Spring>
+bool isAtRest(const System& system, const Spring& spring, const Points& torques) {
+  constexpr double kSmall = 1e-6;  // of the torque by the stiffness
+  return std::all_of(spring.particles.begin(), spring.particles.end(), [&](std::uint32_t i) {
+    return system.pinned(i) || torques.col(i).norm() < kSmall * spring.stiffness;
+  });
+}
+
 /// Calls `visit(spring, index)` for each spring that `undefinedSpring` may name.
 template <class Visitor>
 void forEachUndefined(const System& system, const Points& positions, double near,
                       const Visitor& visit) {
-  constexpr double kAtRest = 1e-6;   // [rad] or [sr]
-  constexpr double kSteepest = 1e9;  // beyond it rounding of the points makes the value
+  System::Workspace workspace;
+  bool evaluated = false;
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     const auto& springs = system.springs<Spring>();
     for (std::size_t i = 0; i < springs.size(); ++i) {
-      const auto points = System::points(springs[i], positions);
-      if (distanceToUndefined(springs[i], points) >= near) continue;
-      const auto c = condition(springs[i], points);
-      double slope = 0;  // 0 at the very place, where the value is a convention
-      for (const Vector3& gradient : c.gradient) slope = std::max(slope, gradient.norm());
-      const bool at_rest = std::abs(c.value) < kAtRest && slope > 0 && slope < kSteepest;
-      if (!at_rest) visit(springs[i], i);
+      const double distance = distanceToUndefined(springs[i], System::points(springs[i], positions));
+      if (distance >= near) continue;
+      if (!evaluated) system.evaluate(positions, workspace);
+      evaluated = true;
+      // At the very place the value is a convention, and nothing pulls.
+      if (distance > 0 && isAtRest(system, springs[i], workspace.torques)) continue;
+      visit(springs[i], i);
     }
   });
 }

@@ -156,11 +156,16 @@ class Relaxation {
   }
 
   /// Whether the descent is no higher than what is kept, but for rounding. The energy where a
-  /// spring is undefined is a convention, which nothing need be below.
+  /// spring is undefined is a convention: such a place on the way need not be lower, and where the
+  /// start is one, neither need that.
   bool mayBeTheEnd() const {
-    if (descent_->value() <= (1 + kEnergyRounding) * result_.energy_after) return true;
-    return !undefinedSpring(system_, result_.positions).empty() &&
-           undefinedSpring(system_, descent_->positions()).empty();
+    const auto isAtMost = [&](double energy) {
+      return descent_->value() <= (1 + kEnergyRounding) * energy;
+    };
+    if (isAtMost(result_.energy_after)) return true;
+    if (undefinedSpring(system_, result_.positions).empty()) return false;
+    if (!undefinedSpring(system_, descent_->positions()).empty()) return false;
+    return isAtMost(result_.energy_before) || !undefinedSpring(system_, start_).empty();
   }
 
   /// Lower in energy than what is kept or, where rounding hides that, in torque.

@@ -8,11 +8,10 @@ namespace spherical_springs::core {
 
 TorqueLimit::TorqueLimit(const System& system, double bound) : bound_(bound) {
   if (!isRelative()) return;
-  constexpr double kRounding = 1e-15;  // of an angle or a solid angle
-  rounding_ = Eigen::VectorXd::Zero(system.particleCount());
+  own_stiffness_ = Eigen::VectorXd::Zero(system.particleCount());
   forEachKind([&](auto kind) {
     for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-      for (const std::uint32_t i : spring.particles) rounding_[i] += kRounding * spring.stiffness;
+      for (const std::uint32_t i : spring.particles) own_stiffness_[i] += spring.stiffness;
     }
   });
 }
@@ -62,6 +61,18 @@ std::string excessInWords(const System& system, const Points& positions, const T
             " N m, 1e-9 of the stiffness that it feels";
   }
   return words;
+}
+
+std::vector<bool> areWithin(const System& system, const Points& positions,
+                            const TorqueLimit& limit) {
+  System::Workspace workspace;
+  system.evaluate(positions, workspace);
+  const Eigen::VectorXd allowed = allowedTorques(system, positions, limit);
+  std::vector<bool> within(positions.cols());
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    within[i] = system.pinned(i) || excessOf(workspace.torques.col(i).norm(), allowed[i]) <= 1;
+  }
+  return within;
 }
 
 }  // namespace spherical_springs::core

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "spherical_springs/system.h"
 
@@ -24,12 +25,18 @@ class TorqueLimit {
   /// The bound on a particle that feels `stiffness` [N m/rad], by its index in the system.
   double allowed(std::size_t particle, double stiffness) const {
     constexpr double kShare = 1e-9;
-    return isRelative() ? std::max(kShare * stiffness, rounding_[particle]) : bound_;
+    constexpr double kStiffest = 1e5;  // beside what is stiffer, as near antipodal vertices, the
+                                       // rest of the springs would count for nothing
+    if (!isRelative()) return bound_;
+    const double counted = std::min(stiffness, kStiffest * own_stiffness_[particle]);
+    return std::max(kShare * counted, kRounding * own_stiffness_[particle]);
   }
 
  private:
+  static constexpr double kRounding = 1e-15;  // of an angle or a solid angle
+
   double bound_;
-  Eigen::VectorXd rounding_;  // of the torque on each particle [N m]; only where it is relative
+  Eigen::VectorXd own_stiffness_;  // of all springs at each particle; only where it is relative
 };
 
 /// The stiffness that each particle feels at `positions` [N m/rad]: half the trace of its block of
@@ -46,5 +53,9 @@ std::string excessInWords(const System& system, const Points& positions, const T
 
 /// `torque` as a multiple of what is allowed, in one unit; above 1 where it is too large.
 inline double excessOf(double torque, double allowed) { return torque == 0 ? 0 : torque / allowed; }
+
+/// Returns of each particle whether its torque is allowed.
+std::vector<bool> areWithin(const System& system, const Points& positions,
+                            const TorqueLimit& limit);
 
 }  // namespace spherical_springs::core

@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "relaxation/torque_limit.h"
 #include "relaxation/turn_back.h"
 #include "spherical_springs/range.h"
 
@@ -179,7 +180,8 @@ struct Runner::Work {
   /// The answer of a relaxation that was cancelled when it had come to `reached`; null: nowhere.
   RelaxationResult cancelled(const std::shared_ptr<const RelaxationResult>& reached) const {
     RelaxationResult answer = reached ? *reached : unrelaxed(*system, start);
-    turnBack(*system, start, {}, answer);
+    const TorqueLimit limit(*system, options.tolerance);
+    turnBack(*system, start, areWithin(*system, start, limit), answer);
     answer.message = "cancelled; largest torque " + toText(answer.max_torque) + " N m";
     return answer;
   }

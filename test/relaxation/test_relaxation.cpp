@@ -164,6 +164,24 @@ TEST_P(Relaxation, EndsWhenToldToAtItsBest) {
   EXPECT_EQ(result.message.rfind("cancelled", 0), 0) << result.message;
 }
 
+TEST_P(Relaxation, KeepsTheBitsOfPinnedParticles) {
+  const Scene random = testing::randomScene(4, 60, 4);
+  std::vector<Particle> particles = random.particles().items();
+  for (std::size_t i = 0; i < 30; ++i) particles[i].pinned = true;
+  const Scene scene = testing::sceneOf(particles, testing::springsOf(random));
+  const Points start = testing::positionsOf(scene);
+  for (const bool keep_orientation : {false, true}) {
+    RelaxationOptions options;
+    options.method = relaxationMethod(GetParam());
+    options.keep_orientation = keep_orientation;
+    int calls = 0;
+    options.go_on = [&](const RelaxationProgress&) { return ++calls < 200; };
+    const auto result = relax(System(scene, {}), start, options);
+    EXPECT_EQ(result.positions.leftCols(30), start.leftCols(30));
+    EXPECT_NE(result.positions, start);
+  }
+}
+
 TEST_P(Relaxation, EndsWhenItsTimeIsOver) {
   const auto scene = testing::randomScene(3, 50, 80);
   RelaxationOptions options;

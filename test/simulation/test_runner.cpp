@@ -17,6 +17,20 @@ void fill(Runner& runner, const Scene& scene) {
   });
 }
 
+/// Adds a scene to one whose ids, like its own, are counted from 0.
+void addBeside(Runner& runner, const Scene& scene) {
+  runner.change([&](Simulation& s) {
+    const std::vector<std::uint32_t> ids = s.addParticles(scene.particles().items());
+    SpringLists springs = testing::springsOf(scene);
+    forEachKind([&](auto kind) {
+      for (auto& spring : springs.get<typename decltype(kind)::type>()) {
+        for (std::uint32_t& particle : spring.particles) particle = ids[particle];
+      }
+    });
+    s.addSprings(springs);
+  });
+}
+
 /// A runner in the middle of a relaxation or step that will not end by itself.
 class BusyRunner : public ::testing::TestWithParam<Activity> {
  protected:
@@ -185,6 +199,36 @@ TEST(Runner, DoesNotTurnTheWholeWhenCancelled) {
     const RelaxationResult result = answer.get();
     EXPECT_TRUE(lieAsNearAsTheyCan(start, result.positions)) << result.message;
     EXPECT_EQ(runner.snapshot().state.positions, result.positions);
+  }
+}
+
+TEST(Runner, KeepsTheBitsOfWhatWasRelaxedWhenCancelled) {
+  const auto start = std::vector<Particle>{testing::particleAt({1, 0, 0}),
+                                           testing::particleAt({0, 1, 0})};
+  for (const auto method : {RelaxationMethod::dynamics, RelaxationMethod::fire}) {
+    Runner runner({}, false);
+    std::vector<std::uint32_t> pair;
+    runner.change([&](Simulation& s) {
+      pair = s.addParticles(start);
+      SpringLists springs;
+      AngleSpring spring;
+      spring.particles = {pair[0], pair[1]};
+      spring.rest_angle = kPi / 2 + 3e-10;
+      spring.stiffness = 1;
+      springs.get<AngleSpring>().push_back(spring);
+      s.addSprings(springs);
+    });
+    addBeside(runner, knot(300));
+    const Points before = runner.snapshot().state.positions;
+    RelaxationOptions options;
+    options.method = method;
+    auto answer = std::async(std::launch::async, [&] { return runner.relax(options); });
+    const auto moved = [&] {
+      return (runner.snapshot().state.positions - before).cwiseAbs().maxCoeff() > 0.1;
+    };
+    while (!moved()) std::this_thread::yield();
+    runner.cancel();
+    EXPECT_EQ(answer.get().positions.leftCols(2), before.leftCols(2));
   }
 }
 
