@@ -96,6 +96,7 @@ int main(int argc, char** argv) {
   mallopt(M_ARENA_MAX, 1);  // NOLINT(concurrency-mt-unsafe): there is no other thread yet
 #endif
   const ros::NodeHandle keeps_the_log_alive;  // the last handle to go closes it
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is one that cannot be written
   // ROS itself sees to SIGINT alone; SIGTERM would end a save in the middle. The first handle
   // starts ROS and thereby forgets every earlier request to shut down, so this comes after it.
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });

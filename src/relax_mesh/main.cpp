@@ -2,7 +2,9 @@
 #include <ros/init.h>
 
 #include <algorithm>
+#include <boost/thread/exceptions.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
@@ -203,6 +205,7 @@ int main(int argc, char** argv) {
     ros::init(argc, argv, "relax_mesh",  // takes its arguments
               ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
     keepInterruptions();
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is one that cannot be written
     const auto options = parseOptions({argv + 1, argv + argc});
     if (options) run(*options);
   } catch (const Interrupted& fault) {
@@ -210,6 +213,10 @@ int main(int argc, char** argv) {
     return 1;
   } catch (const std::bad_alloc&) {
     std::cerr << "error: " << kNoMemory << std::endl;
+    return 1;
+  } catch (const boost::thread_resource_error&) {
+    std::cerr << "error: " << kNoMemory << " for the threads of ROS, or there are too many"
+              << std::endl;
     return 1;
   } catch (const std::exception& fault) {
     // ROS shows names that it does not take as they are.

@@ -21,6 +21,14 @@ constexpr int kCorners = 3;
   throw std::invalid_argument("line " + std::to_string(line) + ": " + reason);
 }
 
+/// Passes over the byte order mark that some programs begin a text with.
+void skipMark(std::istream& in) {
+  constexpr char kMark[] = "\xEF\xBB\xBF";
+  for (const char* c = kMark; *c != '\0' && in.peek() == std::char_traits<char>::to_int_type(*c); ++c) {
+    in.get();
+  }
+}
+
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 const char* skipBlanks(const char* text) {
@@ -101,6 +109,7 @@ TriangleMesh readObj(std::istream& in, const core::Checkpoint& checkpoint) {
   int highest = -1;
   std::string line;
   const char* rest;
+  skipMark(in);
   while (std::getline(in, line)) {
     checkpoint();
     ++last_line;

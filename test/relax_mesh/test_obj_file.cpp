@@ -85,6 +85,13 @@ TEST(ObjFile, IsReadWhateverElseItHolds) {
   EXPECT_EQ(faces, mesh.faces);
 }
 
+TEST(ObjFile, MayBeginWithAByteOrderMark) {
+  const char* const text = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nf 1 2 3\n";
+  const TriangleMesh mesh = meshOf(std::string("\xEF\xBB\xBF") + text);
+  EXPECT_EQ(meshOf(text).vertices, mesh.vertices);
+  EXPECT_EQ(meshOf(text).faces, mesh.faces);
+}
+
 TEST(ObjFile, RefusesWhatIsNoVertex) {
   for (const char* line : {"v nan 0 0", "v 0 inf 0", "v 0 0 1e999", "v 1 2", "v 1 2 ", "v",
                            "v 1 2 x", "v 1 2 3x", "v 1,5 2 3"}) {

@@ -35,7 +35,6 @@ def relax_mesh(environment=None, longest_file=None, **options):
         if longest_file is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (longest_file, longest_file))
 
-    # Python ignores the signal that a file which grows too long raises, and so does its child.
     return Outcome(subprocess.run(command(**options), stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, text=True, timeout=4 * LONG,
-                                  env=environment, preexec_fn=limit, restore_signals=False))
+                                  env=environment, preexec_fn=limit))
