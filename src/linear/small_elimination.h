@@ -48,16 +48,17 @@ inline void subtractTile(const Columns& factors, const Columns& coefficients, st
       for (int v = 0; v < V; ++v) sums[v][w] -= coefficient * x[v];
     }
   };
-  // Lanes after the last row read the next column; after the last column there is none.
-  const std::ptrdiff_t whole = kIsPart ? depth - 1 : depth;
+  // Lanes after the last row read the next columns, of which the last ones have too few.
+  const std::ptrdiff_t few = (kLanes - part + factors.stride - 1) / factors.stride;
+  const std::ptrdiff_t whole = !kIsPart ? depth : depth > few ? depth - few : 0;
   for (std::ptrdiff_t k = 0; k < whole; ++k) {
     Lanes x[V];
     for (int v = 0; v < V; ++v) x[v] = load(factors.at(v * kLanes, k));
     subtract(x, k);
   }
-  if (whole >= 0 && whole < depth) {
-    Lanes x[V] = {loadPart(factors.at(0, whole), part)};
-    subtract(x, whole);
+  for (std::ptrdiff_t k = whole; k < depth; ++k) {
+    Lanes x[V] = {loadPart(factors.at(0, k), part)};
+    subtract(x, k);
   }
   for (int w = 0; w < W; ++w) {
     for (int v = 0; v < V; ++v) {

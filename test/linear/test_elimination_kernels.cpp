@@ -1,7 +1,9 @@
 // The kernels of every instruction set that this processor has against the definition.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "base/instruction_set.h"
@@ -56,6 +58,41 @@ TEST(EliminationKernels, LeaveTheFactorAndWhatItAddsToTheRest) {
       EXPECT_LT((factor * factor.transpose() - was.own).norm(), rounding);
       EXPECT_LT((parts.below * factor.transpose() - was.below).norm(), rounding);
       EXPECT_LE((parts.below * parts.below.transpose() + added).norm(), rounding);
+    }
+  }
+}
+
+/// Memory that ends where a page begins that may not be touched.
+class GuardedMemory {
+ public:
+  explicit GuardedMemory(const Eigen::MatrixXd& content)
+      : size_(content.size() * sizeof(double)), pages_((size_ + kPage - 1) / kPage) {
+    base_ = static_cast<char*>(mmap(nullptr, (pages_ + 1) * kPage, PROT_READ | PROT_WRITE,
+                                    MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    mprotect(base_ + pages_ * kPage, kPage, PROT_NONE);
+    std::memcpy(data(), content.data(), size_);
+  }
+  ~GuardedMemory() { munmap(base_, (pages_ + 1) * kPage); }
+  GuardedMemory(const GuardedMemory&) = delete;
+  GuardedMemory& operator=(const GuardedMemory&) = delete;
+
+  double* data() { return reinterpret_cast<double*>(base_ + pages_ * kPage - size_); }
+
+ private:
+  static constexpr std::size_t kPage = 4096;
+  std::size_t size_, pages_;
+  char* base_;
+};
+
+TEST(EliminationKernels, ReadNothingBeyondTheirMatrices) {
+  for (const EliminationKernels& kernels : kernelsHere()) {
+    for (int own = 1; own < 12; ++own) {
+      for (int rest = 0; rest < 20; ++rest) {
+        Parts parts(randomDefinite(own + rest), own);
+        GuardedMemory own_block(parts.own), below(parts.below), the_rest(parts.rest);
+        EXPECT_TRUE(kernels.eliminate(
+            {own_block.data(), below.data(), the_rest.data(), parts.own.rows(), parts.rest.rows()}));
+      }
     }
   }
 }
