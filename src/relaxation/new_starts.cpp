@@ -23,9 +23,9 @@ Eigen::VectorXd reach(const System& system, const Points& positions) {
   return (longest.array() > 0).select(longest, 1);
 }
 
-/// Whether the torque on the free ends of a spring is small beside its stiffness. That of one which
-/// is nearly undefined is mostly rounding unless the spring is at rest, and so is what others do
-/// against it.
+/// Returns whether the torques on the free ends of a spring are small beside its stiffness, as
+/// where the scene is at rest. Elsewhere the torque of a spring that is nearly undefined is mostly
+/// rounding.
 template <class Spring>
 bool isAtRest(const System& system, const Spring& spring, const Points& torques) {
   constexpr double kSmall = 1e-6;  // of the torque by the stiffness

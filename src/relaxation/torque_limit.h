@@ -25,8 +25,8 @@ class TorqueLimit {
   /// The bound on a particle that feels `stiffness` [N m/rad], by its index in the system.
   double allowed(std::size_t particle, double stiffness) const {
     constexpr double kShare = 1e-9;
-    constexpr double kStiffest = 1e5;  // beside what is stiffer, as near antipodal vertices, the
-                                       // rest of the springs would count for nothing
+    // Next to antipodal vertices a triangle is so stiff that all other torques would be allowed.
+    constexpr double kStiffest = 1e5;  // of the springs' own
     if (!isRelative()) return bound_;
     const double counted = std::min(stiffness, kStiffest * own_stiffness_[particle]);
     return std::max(kShare * counted, kRounding * own_stiffness_[particle]);
