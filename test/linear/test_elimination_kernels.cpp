@@ -70,7 +70,7 @@ class GuardedMemory {
     base_ = static_cast<char*>(mmap(nullptr, (pages_ + 1) * kPage, PROT_READ | PROT_WRITE,
                                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     mprotect(base_ + pages_ * kPage, kPage, PROT_NONE);
-    std::memcpy(data(), content.data(), size_);
+    if (size_ > 0) std::memcpy(data(), content.data(), size_);
   }
   ~GuardedMemory() { munmap(base_, (pages_ + 1) * kPage); }
   GuardedMemory(const GuardedMemory&) = delete;
