@@ -48,7 +48,7 @@ inline void subtractTile(const Columns& factors, const Columns& coefficients, st
       for (int v = 0; v < V; ++v) sums[v][w] -= coefficient * x[v];
     }
   };
-  // Lanes after the last row read the next columns, of which the last ones have too few.
+  // Lanes below the last row read on into the next columns, which the last `few` columns lack.
   const std::ptrdiff_t few = (kLanes - part + factors.stride - 1) / factors.stride;
   const std::ptrdiff_t whole = !kIsPart ? depth : depth > few ? depth - few : 0;
   for (std::ptrdiff_t k = 0; k < whole; ++k) {

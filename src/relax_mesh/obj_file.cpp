@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/files.h"
@@ -16,17 +17,10 @@ namespace spherical_springs::mesh {
 namespace {
 
 constexpr int kCorners = 3;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some programs begin texts with it
 
 [[noreturn]] void refuse(std::size_t line, const std::string& reason) {
   throw std::invalid_argument("line " + std::to_string(line) + ": " + reason);
-}
-
-/// Passes over the byte order mark that some programs begin a text with.
-void skipMark(std::istream& in) {
-  constexpr char kMark[] = "\xEF\xBB\xBF";
-  for (const char* c = kMark; *c != '\0' && in.peek() == std::char_traits<char>::to_int_type(*c); ++c) {
-    in.get();
-  }
 }
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -109,9 +103,9 @@ TriangleMesh readObj(std::istream& in, const core::Checkpoint& checkpoint) {
   int highest = -1;
   std::string line;
   const char* rest;
-  skipMark(in);
   while (std::getline(in, line)) {
     checkpoint();
+    if (last_line == 0 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     ++last_line;
     if (begins(line, 'v', rest)) {
       vertices.push_back(parseVertex(last_line, rest));

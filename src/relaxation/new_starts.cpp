@@ -44,7 +44,8 @@ void forEachUndefined(const System& system, const Points& positions, double near
     using Spring = typename decltype(kind)::type;
     const auto& springs = system.springs<Spring>();
     for (std::size_t i = 0; i < springs.size(); ++i) {
-      const double distance = distanceToUndefined(springs[i], System::points(springs[i], positions));
+      const auto points = System::points(springs[i], positions);
+      const double distance = distanceToUndefined(springs[i], points);
       if (distance >= near) continue;
       if (!evaluated) system.evaluate(positions, workspace);
       evaluated = true;

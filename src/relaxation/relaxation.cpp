@@ -156,8 +156,8 @@ class Relaxation {
   }
 
   /// Whether the descent is no higher than what is kept, but for rounding. The energy where a
-  /// spring is undefined is a convention: such a place on the way need not be lower, and where the
-  /// start is one, neither need that.
+  /// spring is undefined is a convention: an end may be above such a place on the way, but above
+  /// the start only where that is one too.
   bool mayBeTheEnd() const {
     const auto isAtMost = [&](double energy) {
       return descent_->value() <= (1 + kEnergyRounding) * energy;

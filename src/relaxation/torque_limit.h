@@ -54,7 +54,7 @@ std::string excessInWords(const System& system, const Points& positions, const T
 /// `torque` as a multiple of what is allowed, in one unit; above 1 where it is too large.
 inline double excessOf(double torque, double allowed) { return torque == 0 ? 0 : torque / allowed; }
 
-/// Returns of each particle whether its torque is allowed.
+/// Returns for each particle whether its torque is allowed; true where it is pinned.
 std::vector<bool> areWithin(const System& system, const Points& positions,
                             const TorqueLimit& limit);
 

@@ -62,7 +62,7 @@ TEST(EliminationKernels, LeaveTheFactorAndWhatItAddsToTheRest) {
   }
 }
 
-/// Memory that ends where a page begins that may not be touched.
+/// Memory followed by a page that must not be touched.
 class GuardedMemory {
  public:
   explicit GuardedMemory(const Eigen::MatrixXd& content)
@@ -90,8 +90,8 @@ TEST(EliminationKernels, ReadNothingBeyondTheirMatrices) {
       for (int rest = 0; rest < 20; ++rest) {
         Parts parts(randomDefinite(own + rest), own);
         GuardedMemory own_block(parts.own), below(parts.below), the_rest(parts.rest);
-        EXPECT_TRUE(kernels.eliminate(
-            {own_block.data(), below.data(), the_rest.data(), parts.own.rows(), parts.rest.rows()}));
+        EXPECT_TRUE(kernels.eliminate({own_block.data(), below.data(), the_rest.data(),
+                                       parts.own.rows(), parts.rest.rows()}));
       }
     }
   }

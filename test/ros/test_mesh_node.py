@@ -16,7 +16,7 @@ from shapes import CORNERS, TETRAHEDRON, bumpy, double_pyramid, mesh
 
 OCTANT, PAN_TILT = (os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch', name)
                     for name in ('octant.json', 'pan_tilt.json'))
-LONG_MAPPING = bumpy(5)  # a second or more, however fast the machine
+LONG_MAPPING = bumpy(5)  # 10,242 vertices: 1 to 3 s on two cores
 UNRELAXED = '; the map has been written, but springs have not relaxed it'
 
 
