@@ -20,10 +20,10 @@ class MapDescent {
   bool iterate(FaceHessian hessian);
 
   /// Iterates while `go_on()`, until a step that was not held short lowers the energy by less than
-  /// the share `slow`, or none does.
+  /// the share `slow`, or any step by no more than rounding does.
   template <class GoOn>
   void run(FaceHessian hessian, double slow, const GoOn& go_on) {
-    while (go_on() && iterate(hessian) && (held_short_ || drop_ > slow)) {
+    while (go_on() && iterate(hessian) && drop_ > (held_short_ ? kRounding : slow)) {
     }
   }
 
@@ -40,6 +40,7 @@ class MapDescent {
 
  private:
   static constexpr double kFirstShift = 1e-2;
+  static constexpr double kRounding = 1e-13;  // of the energy; steps are held short there as well
 
   /// @return whether the shifted Hessian was definite.
   bool solve();

@@ -53,6 +53,20 @@ TEST(SphereMap, OfTheSmallestMesh) {
   EXPECT_LT(spread(testing::tetrahedron(), shares, points), 1e-4);
 }
 
+// Of a tetrahedron with shapes the minimum is reached within rounding, where a descent must end.
+TEST(SphereMap, OfTetrahedraWithRandomAreas) {
+  testing::Random random(3);
+  const TriangleMesh mesh = testing::tetrahedron();
+  MapOptions options = patient(1e-5);
+  options.max_time = 10;
+  for (int i = 0; i < 60; ++i) {
+    Eigen::Vector4d areas;
+    for (double& area : areas) area = random.between(0.3, 1);
+    const Eigen::VectorXd shares = faceShares(areas);
+    EXPECT_LT(spread(mesh, shares, sphereMap(mesh, shares, options)), 2e-5) << areas.transpose();
+  }
+}
+
 TEST(SphereMap, OfASphereFromItselfIsItself) {
   const TriangleMesh mesh = testing::deformedSphere(3, [](const Vector3& p) { return p; });
   Eigen::VectorXd shares(mesh.faces.cols());
