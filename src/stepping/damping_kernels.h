@@ -12,12 +12,12 @@ namespace spherical_springs::core {
 /// Damped springs that a kernel takes together. The last group of a list is filled up with ones of
 /// no damping.
 template <int kEndsOfOne>
-struct alignas(Row) DamperGroup {
+struct alignas(kCacheLine) DamperGroup {
   static constexpr int kEnds = kEndsOfOne;
 
-  std::uint32_t ends[kEnds][kGroup];  ///< where rows of particles begin [doubles]
   double root_coefficient[kGroup];
   double root_mobility[kEnds][kGroup];  ///< of each end, the root of its particle's inverse mass
+  std::uint32_t ends[kEnds][kGroup];    ///< where rows of particles begin [doubles]
 };
 
 struct ArcDampers : DamperGroup<2> {};
@@ -30,7 +30,7 @@ struct OrientedArcDampers : DamperGroup<3> {
 /// coefficient. They are 0 in sum, as a rotation of the whole changes no condition, and those of
 /// the last ends are left out.
 template <int kEnds>
-struct alignas(Row) GradientGroup {
+struct alignas(kCacheLine) GradientGroup {
   double of[kEnds - 1][3][kGroup];
 };
 template <class Dampers>

@@ -9,6 +9,9 @@ namespace spherical_springs::core {
 inline constexpr std::size_t kGroup = 8;      ///< so many springs or particles lie side by side
 inline constexpr std::size_t kRowLength = 4;  ///< of a vector in memory: x, y, z and one not used
 
+/// [bytes]; lanes of AVX-512 that lie across two of them take longer to load.
+inline constexpr std::size_t kCacheLine = 64;
+
 struct alignas(kRowLength * sizeof(double)) Row {
   double values[kRowLength];
 };
