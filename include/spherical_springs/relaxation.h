@@ -44,7 +44,8 @@ struct RelaxationOptions {
   RelaxationMethod method = RelaxationMethod::newton;  ///< how it descends
   /// Largest torque left on a free particle [N m]. 0: on each particle 1e-9 of the stiffness that it
   /// feels, which is half the trace of its block of the definite Hessian and counts as at most 1e5
-  /// times the sum of its springs' stiffness; at least 1e-15 of that sum, which is rounding.
+  /// times the sum of its springs' stiffness; at least 1e-15 of the root of stiffness times sum,
+  /// which bounds what rounding leaves.
   double tolerance = 0;
   double max_time = 0;  ///< wall [s]; 0: no limit
   /// Whether steps are cut before a triangle of a solid-angle spring would fold: one that is

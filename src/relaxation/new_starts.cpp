@@ -56,6 +56,29 @@ void forEachUndefined(const System& system, const Points& positions, double near
   });
 }
 
+/// Moves free ends of springs in random directions.
+class EndMover {
+ public:
+  EndMover(const System& system, double distance, unsigned seed)
+      : system_(system), distance_(distance), generator_(seed) {}
+
+  template <class Spring>
+  void move(const Spring& spring, Points& positions) {
+    for (const std::uint32_t i : spring.particles) {
+      const double angle = 2 * kPi * (generator_() / (std::mt19937::max() + 1.));
+      if (system_.pinned(i)) continue;
+      const Vector3 p = positions.col(i);
+      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+      positions.col(i) = rotated(p, distance_ * (tangentFrame(p) * direction));
+    }
+  }
+
+ private:
+  const System& system_;
+  double distance_;
+  std::mt19937 generator_;
+};
+
 }  // namespace
 
 Points displaced(const System& system, Points positions, double share, unsigned seed) {
@@ -80,15 +103,18 @@ std::string undefinedSpring(const System& system, const Points& positions, doubl
 }
 
 Points besideUndefined(const System& system, Points positions, double distance, unsigned seed) {
-  std::mt19937 generator(seed);
+  EndMover mover(system, distance, seed);
+  forEachUndefined(system, Points(positions), kUndefined,
+                   [&](const auto& spring, std::size_t) { mover.move(spring, positions); });
+  return positions;
+}
+
+Points besideFlat(const System& system, Points positions, double distance, unsigned seed) {
+  EndMover mover(system, distance, seed);
   const Points from = positions;
-  forEachUndefined(system, from, kUndefined, [&](const auto& spring, std::size_t) {
-    for (const std::uint32_t i : spring.particles) {
-      const double angle = 2 * kPi * (generator() / (std::mt19937::max() + 1.));
-      if (system.pinned(i)) continue;
-      const Vector3 p = from.col(i);
-      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-      positions.col(i) = rotated(p, distance * (tangentFrame(p) * direction));
+  forEachKind([&](auto kind) {
+    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
+      if (isFlat(spring, System::points(spring, from))) mover.move(spring, positions);
     }
   });
   return positions;

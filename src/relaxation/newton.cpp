@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "base/parallel.h"
+#include "relaxation/negative_curvature.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -14,6 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLongestMove = 0.7;  // of a particle in one step [rad]
 constexpr double kLeastShift = 1e-7;  // rotations of the whole scene need one
 constexpr double kGreatestShift = 1e3;
+constexpr double kNegligible = 1e-6;  // curvature below 0, of the stiffness
 constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 
@@ -306,8 +307,6 @@ void Newton::scaleToHere() {
 }
 
 bool Newton::leaveSaddle() {
-  constexpr double kNegligible = 1e-6;  // curvature, of the stiffness
-  constexpr double kProbeTolerance = 3e-2;
   if (energy_.freeCount() == 0) return false;
   shift_ = kNegligible;
   scaleToHere();
@@ -315,21 +314,34 @@ bool Newton::leaveSaddle() {
     model_ = Model::exact;
     evaluate();
   }
-  std::mt19937 generator(1);
-  Eigen::VectorXd probe(energy_.gradient().size());
-  for (Eigen::Index i = 0; i < probe.size(); ++i) {
-    probe[i] = generator() / (0.5 * std::mt19937::max()) - 1;
-  }
-  ModelMinimum found = minimum(probe, kProbeTolerance);
-  if (found.indefinite && model_ == Model::exact) {
-    model_ = Model::indefinite;
-    evaluate();
-    found = minimum(probe, kProbeTolerance);
-  }
-  if (!found.indefinite || found.downward.size() == 0) return false;
+  const Eigen::VectorXd downward = downwardDirection();
+  return downward.size() > 0 && goAlong(downward / longestMove(downward));
+}
 
+/// Returns a direction of negative curvature, or an empty one where none is found: for certain in a
+/// small scene; by conjugate gradients elsewhere.
+Eigen::VectorXd Newton::downwardDirection() {
+  constexpr std::size_t kSmall = 1000;  // particles
+  constexpr double kLittleWork = 1e7;   // multiplications
+  constexpr double kProbeTolerance = 3e-2;
+  const BlockPattern& pattern = energy_.pattern();
+  if (pattern.rows() <= kSmall) {
+    MultifrontalCholesky inverse(pattern, threads_);
+    if (inverse.work() <= kLittleWork) {
+      return negativeCurvature(inverse, pattern, energy_.hessian(), scale_, kNegligible);
+    }
+  }
+  const Eigen::VectorXd probe = scattered(energy_.gradient().size());
+  const ModelMinimum found = minimum(probe, kProbeTolerance);
+  if (!found.indefinite || model_ == Model::indefinite) return found.downward;
+  model_ = Model::indefinite;
+  evaluate();
+  return minimum(probe, kProbeTolerance).downward;
+}
+
+/// Moves along a direction as far as that lowers the energy.
+bool Newton::goAlong(const Eigen::VectorXd& direction) {
   const double value = energy_.value();
-  const Eigen::VectorXd direction = found.downward / longestMove(found.downward);
   energy_.mark();
   for (double length = 0.1; length > 1e-9; length /= 4) {
     for (const double sign : {1., -1.}) {

@@ -83,6 +83,8 @@ class Newton : public Descent {
   void correct();
   bool creeps();
   void scaleToHere();
+  Eigen::VectorXd downwardDirection();
+  bool goAlong(const Eigen::VectorXd& direction);
 
   int threads_;
   TangentEnergy energy_;

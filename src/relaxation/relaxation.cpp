@@ -88,12 +88,13 @@ class Relaxation {
         break;
       }
       if (at_minimum) {
-        if (leaveSaddle()) continue;
+        if (leaveSaddle() || leaveFlat()) continue;
         result_.converged = true;
         result_.message = "converged";
         return;
       }
       if (outcome == Outcome::stuck) {
+        if (leaveFlat()) continue;
         if (atRoundingFloor(descent_->positions()) || ++stuck > kStuckAttempts) break;
         if (stuck == 1) {  // without what it has learnt on the way a descent may get further
           descent_->place(descent_->positions());
@@ -122,6 +123,20 @@ class Relaxation {
     if (options_.keep_orientation || attempt >= kAttempts) return false;
     const Points beside = besideUndefined(system_, result_.positions, shareOf(attempt), attempt);
     if (!undefinedSpring(system_, beside).empty()) return false;
+    descent_->place(beside);
+    return true;
+  }
+
+  /// Starts again, a few times in all, beside springs whose energy falls where nothing tells so.
+  /// Where the way leads back, it is a minimum all the same.
+  bool leaveFlat() {
+    constexpr unsigned kAttempts = 2;
+    constexpr double kDistance = 0.05;  // [rad]
+    if (options_.keep_orientation || flat_attempts_ >= kAttempts) return false;
+    const Points beside =
+        besideFlat(system_, result_.positions, kDistance * (flat_attempts_ + 1), flat_attempts_);
+    if (beside == result_.positions) return false;
+    ++flat_attempts_;
     descent_->place(beside);
     return true;
   }
@@ -237,6 +252,7 @@ class Relaxation {
   double first_excess_;
   RelaxationResult result_;
   double excess_ = 0;  // of the result
+  unsigned flat_attempts_ = 0;
 };
 
 }  // namespace

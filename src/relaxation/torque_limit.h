@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace spherical_springs::core {
 /// share of the stiffness that each particle feels, so that soft springs relax beside stiff ones.
 class TorqueLimit {
  public:
-  /// `bound`: [N m]; 0: 1e-9 of the stiffness or, where that is less, what rounding of a condition
-  /// makes of the stiffness of the springs at the particle.
+  /// `bound`: [N m]; 0: 1e-9 of the stiffness or, where that is less, what rounding of the
+  /// conditions of the springs at the particle makes of its torque.
   TorqueLimit(const System& system, double bound);
 
   bool isRelative() const { return bound_ == 0; }
@@ -29,7 +30,9 @@ class TorqueLimit {
     constexpr double kStiffest = 1e5;  // of the springs' own
     if (!isRelative()) return bound_;
     const double counted = std::min(stiffness, kStiffest * own_stiffness_[particle]);
-    return std::max(kShare * counted, kRounding * own_stiffness_[particle]);
+    // At least the sum of stiffness |gradient| over the springs, by Cauchy and Schwarz.
+    const double torque_of_a_radian = std::sqrt(counted * own_stiffness_[particle]);
+    return std::max(kShare * counted, kRounding * torque_of_a_radian);
   }
 
  private:

@@ -42,6 +42,11 @@ void rest(OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {
   spring.rest_angle = sign(alpha, effectiveWidth(spring)).value * angle;
 }
 
+bool isFlat(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {
+  constexpr double kFlat = 1e-3;  // [rad]; further away the torque shows
+  return spring.rest_angle != 0 && (points[1] - points[0]).norm() < kFlat;
+}
+
 Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {
   const auto& [a, b, c] = points;
   const Arc between = arc(a, b);

@@ -31,6 +31,12 @@ constexpr double leastCurvature(Curvature curvature) {
   return curvature == Curvature::tempered ? kTempered : -std::numeric_limits<double>::infinity();
 }
 
+/// Returns false: of most kinds, torque or curvature tells everywhere which way the energy falls.
+template <class Spring>
+constexpr bool isFlat(const Spring&, const std::array<Vector3, Spring::kParticles>&) {
+  return false;
+}
+
 /// Derivatives of the condition in tangent coordinates: particle i moves along frame_i * d_i and
 /// back onto the sphere.
 template <std::size_t N>

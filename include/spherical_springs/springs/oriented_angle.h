@@ -54,6 +54,11 @@ constexpr double distanceToUndefined(const OrientedAngleSpring&, const std::arra
   return std::numeric_limits<double>::infinity();
 }
 
+/// Returns whether the first two of three unit vectors are so near to each other, with another angle
+/// at rest, that neither torque nor curvature need tell which way the energy falls: it does as the
+/// angle times the triple product, an odd function of the way between the two.
+bool isFlat(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
+
 /// Returns C [rad] and its gradients at three unit vectors; where the first two coincide or are
 /// antipodal, as for an angle spring.
 Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
