@@ -28,7 +28,7 @@ void requireVertices(const TriangleMesh& mesh) {
 void requireFaces(const TriangleMesh& mesh) {
   const Eigen::Index count = mesh.vertices.cols();
   if (mesh.faces.cols() < 4) {
-    refuse("the mesh has " + std::to_string(mesh.faces.cols()) + " faces; allowed: 4 or more");
+    refuse("the number of faces is " + std::to_string(mesh.faces.cols()) + "; allowed: 4 or more");
   }
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
     const auto face = mesh.faces.col(f);

@@ -115,7 +115,7 @@ TEST(MeshTopology, FaultyFacesAreRefused) {
   mesh.faces(1, 5) = -1;
   expectRefusal(mesh, "face 5 has vertex -1");
   mesh.faces.resize(3, 0);
-  expectRefusal(mesh, "the mesh has 0 faces");
+  expectRefusal(mesh, "the number of faces is 0");
 }
 
 TEST(MeshTopology, FaultyVerticesAreRefused) {

@@ -96,7 +96,7 @@ def _broken():
         'vertex in no face': (obj(np.concatenate([vertices, points]), faces),
                               'vertex 42 belongs to no face'),
         'no area': (obj(0 * vertices, faces), 'the areas of all faces are 0'),
-        'three faces': (obj(points[:4], TETRAHEDRON[:3]), 'has 3 faces; allowed: 4 or more'),
+        'three faces': (obj(points[:4], TETRAHEDRON[:3]), 'number of faces is 3; allowed: 4 or more'),
         'quadrilateral': (text + 'f 1 2 3 4\n', 'line 123: a face has 4 corners; allowed: 3'),
         'nan': with_coordinate(np.nan),
         'infinite': with_coordinate(np.inf),
