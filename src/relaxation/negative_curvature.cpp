@@ -11,8 +11,8 @@ Eigen::VectorXd scattered(Eigen::Index size) {
   return result;
 }
 
-// H + s D has a Cholesky factor where no eigenvalue of H x = lambda D x is below -s. Inverse iteration
-// with the least s that has one, to a factor of 4, leads to the lowest eigenvalue.
+// H + s D has a Cholesky factor where no eigenvalue of H x = lambda D x is below -s. Inverse
+// iteration with the least s that has one, to a factor of 4, leads to the lowest eigenvalue.
 Eigen::VectorXd negativeCurvature(MultifrontalCholesky& inverse, const BlockPattern& pattern,
                                   const Blocks<double, 2>& hessian, const Eigen::VectorXd& scale,
                                   double negligible) {

@@ -29,7 +29,8 @@ std::string undefinedSpring(const System& system, const Points& positions,
 /// moved by `distance` [rad], each in a direction that depends on `seed` alone.
 Points besideUndefined(const System& system, Points positions, double distance, unsigned seed);
 
-/// Returns the same for the springs that `isFlat` tells of.
+/// Returns the positions with the free particles of all springs that are flat (`isFlat`) moved by
+/// `distance` [rad], each in a direction that depends on `seed` alone.
 Points besideFlat(const System& system, Points positions, double distance, unsigned seed);
 
 }  // namespace spherical_springs::core

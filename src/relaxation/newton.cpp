@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLongestMove = 0.7;  // of a particle in one step [rad]
 constexpr double kLeastShift = 1e-7;  // rotations of the whole scene need one
 constexpr double kGreatestShift = 1e3;
-constexpr double kNegligible = 1e-6;  // curvature below 0, of the stiffness
+constexpr double kNegligible = 1e-6;          // curvature below 0, of the stiffness
 constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 

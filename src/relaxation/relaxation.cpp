@@ -127,8 +127,8 @@ class Relaxation {
     return true;
   }
 
-  /// Starts again, a few times in all, beside springs whose energy falls where nothing tells so.
-  /// Where the way leads back, it is a minimum all the same.
+  /// Starts again, a few times in all, beside springs that are flat (`isFlat`), as their energy may
+  /// fall though no torque and no curvature shows it. Where the way leads back, it is a minimum.
   bool leaveFlat() {
     constexpr unsigned kAttempts = 2;
     constexpr double kDistance = 0.05;  // [rad]

@@ -89,8 +89,7 @@ TEST(NegativeCurvature, IsFoundWhereThereIsSome) {
     testing::Random random(seed);
     const Scene scene = testing::membraneScene(1, seed);
     const System system(scene, {});
-    const TangentEnergy energy =
-        testing::energyAt(system, positionsOf(scene), Curvature::definite);
+    const TangentEnergy energy = testing::energyAt(system, positionsOf(scene), Curvature::definite);
     const BlockPattern& pattern = energy.pattern();
     Blocks<double, 2> hessian = energy.hessian();
     Eigen::VectorXd scale(pattern.rows());
@@ -118,9 +117,9 @@ TEST(NegativeCurvature, IsFoundWhereThereIsSome) {
 // A stiff spring whose torque on a particle is none, as its sign is settled, adds nothing to what
 // rounding leaves there.
 TEST(TorqueLimit, CountsWhatSpringsCanDo) {
-  std::vector<Particle> particles = {
-      testing::particleAt({1, 0, 0}), testing::particleAt({0, 1, 0}),
-      testing::particleAt({0, 0, 1}), testing::particleAt(Vector3(0.1, 0, 1))};
+  std::vector<Particle> particles = {testing::particleAt({1, 0, 0}), testing::particleAt({0, 1, 0}),
+                                     testing::particleAt({0, 0, 1}),
+                                     testing::particleAt(Vector3(0.1, 0, 1))};
   particles[0].pinned = particles[1].pinned = particles[3].pinned = true;
   SpringLists springs;
   springs.get<OrientedAngleSpring>() = {orientedSpring({0, 1, 2}, 1, 1e12)};
