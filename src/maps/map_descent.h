@@ -19,8 +19,8 @@ class MapDescent {
   /// @return whether a step has lowered the energy.
   bool iterate(FaceHessian hessian);
 
-  /// Iterates while `go_on()`, until a step that was not held short lowers the energy by less than
-  /// the share `slow`, or any step by no more than rounding does.
+  /// Iterates while `go_on()`, until a step lowers the energy by no more than the share `slow`, or,
+  /// where it was held short, by no more than rounding; or until none lowers it.
   template <class GoOn>
   void run(FaceHessian hessian, double slow, const GoOn& go_on) {
     while (go_on() && iterate(hessian) && drop_ > (held_short_ ? kRounding : slow)) {
@@ -40,7 +40,7 @@ class MapDescent {
 
  private:
   static constexpr double kFirstShift = 1e-2;
-  static constexpr double kRounding = 1e-13;  // of the energy; steps are held short there as well
+  static constexpr double kRounding = 1e-13;  // of the energy, which cuts steps short at a minimum
 
   /// @return whether the shifted Hessian was definite.
   bool solve();

@@ -7,7 +7,9 @@ namespace spherical_springs::core {
 Eigen::VectorXd scattered(Eigen::Index size) {
   std::mt19937 generator(1);
   Eigen::VectorXd result(size);
-  for (double& number : result) number = generator() / (0.5 * std::mt19937::max()) - 1;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    result[i] = generator() / (0.5 * std::mt19937::max()) - 1;
+  }
   return result;
 }
 

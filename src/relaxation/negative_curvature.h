@@ -10,8 +10,8 @@ namespace spherical_springs::core {
 Eigen::VectorXd scattered(Eigen::Index size);
 
 /// Returns a vector x with x . H x < 0, beyond `negligible` times x . D x, or an empty one where
-/// there is none. `inverse`: of the pattern of H; `hessian`: its blocks; `scale`: the diagonal of
-/// D, one number above 0 a block. One factorisation tells that there is none.
+/// there is none, which one factorisation tells. `inverse` is made for the pattern of H, whose
+/// blocks are `hessian`; `scale` is the diagonal of D, one number above 0 for each block.
 Eigen::VectorXd negativeCurvature(MultifrontalCholesky& inverse, const BlockPattern& pattern,
                                   const Blocks<double, 2>& hessian, const Eigen::VectorXd& scale,
                                   double negligible);

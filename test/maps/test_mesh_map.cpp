@@ -53,7 +53,7 @@ TEST(SphereMap, OfTheSmallestMesh) {
   EXPECT_LT(spread(testing::tetrahedron(), shares, points), 1e-4);
 }
 
-// Of a tetrahedron with shapes the minimum is reached within rounding, where a descent must end.
+// With a shape term a descent reaches the minimum to within rounding, and must end there.
 TEST(SphereMap, OfTetrahedraWithRandomAreas) {
   testing::Random random(3);
   const TriangleMesh mesh = testing::tetrahedron();
@@ -61,7 +61,7 @@ TEST(SphereMap, OfTetrahedraWithRandomAreas) {
   options.max_time = 10;
   for (int i = 0; i < 60; ++i) {
     Eigen::Vector4d areas;
-    for (double& area : areas) area = random.between(0.3, 1);
+    for (int k = 0; k < 4; ++k) areas[k] = random.between(0.3, 1);
     const Eigen::VectorXd shares = faceShares(areas);
     EXPECT_LT(spread(mesh, shares, sphereMap(mesh, shares, options)), 2e-5) << areas.transpose();
   }

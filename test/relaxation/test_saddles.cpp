@@ -82,7 +82,7 @@ TEST_P(Saddle, OfAnOrientedSpringIsAMinimumWhereOthersHoldIt) {
   EXPECT_NEAR(result.energy_after, 0.005, 1e-12);
 }
 
-// Beside the lowest eigenvalue of the dense matrices, as Eigen has it.
+// Eigen finds the lowest eigenvalue of the same matrices, written densely.
 TEST(NegativeCurvature, IsFoundWhereThereIsSome) {
   int found = 0;
   for (unsigned seed = 1; seed <= 40; ++seed) {
@@ -93,13 +93,16 @@ TEST(NegativeCurvature, IsFoundWhereThereIsSome) {
     const BlockPattern& pattern = energy.pattern();
     Blocks<double, 2> hessian = energy.hessian();
     Eigen::VectorXd scale(pattern.rows());
-    for (double& number : scale) number = random.between(0.1, 10);
+    Eigen::VectorXd diagonal(2 * scale.size());
+    for (Eigen::Index i = 0; i < scale.size(); ++i) {
+      scale[i] = random.between(0.1, 10);
+      diagonal.segment<2>(2 * i).setConstant(scale[i]);
+    }
     const double lowered = std::pow(10, random.between(-9, 0));
     for (std::size_t i = 0; i < pattern.rows(); ++i) {
       hessian[pattern.diagonal[i]] -= lowered * Eigen::Matrix2d::Identity();
     }
     const Eigen::MatrixXd matrix = testing::dense(pattern, hessian);
-    const Eigen::VectorXd diagonal = scale.replicate(1, 2).transpose().reshaped();
     const double lowest = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
                               matrix, Eigen::MatrixXd(diagonal.asDiagonal()))
                               .eigenvalues()[0];
@@ -114,8 +117,8 @@ TEST(NegativeCurvature, IsFoundWhereThereIsSome) {
   EXPECT_LT(found, 30);
 }
 
-// A stiff spring whose torque on a particle is none, as its sign is settled, adds nothing to what
-// rounding leaves there.
+// The stiff spring exerts no torque on the free particle, as its sign is settled, and so adds
+// nothing to what rounding leaves there.
 TEST(TorqueLimit, CountsWhatSpringsCanDo) {
   std::vector<Particle> particles = {testing::particleAt({1, 0, 0}), testing::particleAt({0, 1, 0}),
                                      testing::particleAt({0, 0, 1}),

@@ -31,7 +31,7 @@ constexpr double leastCurvature(Curvature curvature) {
   return curvature == Curvature::tempered ? kTempered : -std::numeric_limits<double>::infinity();
 }
 
-/// Returns false: of most kinds, torque or curvature tells everywhere which way the energy falls.
+/// Returns false, as for most kinds the torque or the curvature tells which way the energy falls.
 template <class Spring>
 constexpr bool isFlat(const Spring&, const std::array<Vector3, Spring::kParticles>&) {
   return false;
