@@ -81,17 +81,17 @@ Aggregation aggregated(const BlockPattern& pattern, const std::vector<float>& st
   std::uint32_t count = 0;
   std::vector<std::uint32_t> group;
   for (std::uint32_t root = 0; root < pattern.rows(); ++root) {
-    if (result.aggregate[root] != kNone || pattern.isAlone(root)) continue;
+    if (result.aggregate[root] != kNone) continue;
     result.aggregate[root] = count;
     group = {root};
     growGroup(pattern, strength, size, count, group, result.aggregate);
+    std::uint32_t joined = count;
     if (group.size() < size / 2) {  // what other groups have left over
-      const std::uint32_t other = strongestNeighbour(pattern, strength, group, result.aggregate);
-      for (const std::uint32_t row : group) result.aggregate[row] = other;
-      count += other == count;
-    } else {
-      ++count;
+      joined = strongestNeighbour(pattern, strength, group, result.aggregate);
     }
+    if (joined == count && group.size() == 1) joined = kNone;
+    for (const std::uint32_t row : group) result.aggregate[row] = joined;
+    count += joined == count;
   }
   listMembers(count, result);
   return result;
@@ -105,7 +105,8 @@ Graph coarseGraph(const BlockPattern& fine, const Aggregation& aggregation, int 
     for (std::uint32_t m = aggregation.first_member[a]; m < aggregation.first_member[a + 1]; ++m) {
       const std::uint32_t i = aggregation.members[m];
       for (std::uint32_t e = fine.graph.first[i]; e < fine.graph.first[i + 1]; ++e) {
-        row.push_back(aggregation.aggregate[fine.graph.neighbours[e]]);
+        const std::uint32_t other = aggregation.aggregate[fine.graph.neighbours[e]];
+        if (other != kNone) row.push_back(other);
       }
     }
     std::sort(row.begin(), row.end());

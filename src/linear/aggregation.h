@@ -10,7 +10,7 @@ namespace spherical_springs::core {
 
 struct Aggregation {
   static constexpr std::uint32_t kNone = ~0u;
-  std::vector<std::uint32_t> aggregate;     ///< of each row; kNone where no other row is coupled
+  std::vector<std::uint32_t> aggregate;     ///< of each row; kNone where nothing couples it
   std::vector<std::uint32_t> first_member;  ///< of each aggregate, and the end
   std::vector<std::uint32_t> members;       ///< rows, rising within an aggregate
 
@@ -18,7 +18,8 @@ struct Aggregation {
 };
 
 /// Greedy groups of about `size` coupled rows, numbered so that neighbours are close. `strength`:
-/// of the coupling at each place of the pattern; weak ones are not followed.
+/// of the coupling at each place of the pattern; weak ones are not followed, and a row that has
+/// none above 0 is in no group. Each group has two rows or more, so that a hierarchy of them ends.
 Aggregation aggregated(const BlockPattern& pattern, const std::vector<float>& strength,
                        std::size_t size);
 

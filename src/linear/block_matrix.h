@@ -26,9 +26,6 @@ struct BlockPattern {
 
   std::size_t rows() const { return graph.size(); }
 
-  /// Whether a row has no block but that of the diagonal.
-  bool isAlone(std::uint32_t row) const { return graph.first[row + 1] - graph.first[row] == 1; }
-
   /// Place of the block at `row` and `column`, which must be there.
   std::uint32_t place(std::uint32_t row, std::uint32_t column) const {
     const auto begin = graph.neighbours.begin();

@@ -48,7 +48,8 @@ std::vector<float> strengths(const BlockPattern& pattern, const Blocks<Real, N>&
   std::vector<float> result(values.size());
   parallelFor(pattern.rows(), threads, [&](std::ptrdiff_t i) {
     for (std::uint32_t e = pattern.graph.first[i]; e < pattern.graph.first[i + 1]; ++e) {
-      result[e] = static_cast<float>(values[e].norm());
+      // In double precision no square of what single precision holds is 0.
+      result[e] = static_cast<float>(values[e].template cast<double>().norm());
     }
   });
   return result;
@@ -144,7 +145,9 @@ void Multigrid<Real>::addCoarser(const BlockPattern& pattern, const Blocks<Real,
       const std::uint32_t i = aggregation.members[m];
       for (std::uint32_t e = pattern.graph.first[i]; e < pattern.graph.first[i + 1]; ++e) {
         const std::uint32_t j = pattern.graph.neighbours[e];
-        auto& sum = coarse->values[coarse->pattern.place(a, aggregation.aggregate[j])];
+        const std::uint32_t b = aggregation.aggregate[j];
+        if (b == Aggregation::kNone) continue;
+        auto& sum = coarse->values[coarse->pattern.place(a, b)];
         if constexpr (N == 2) {
           sum.template topRows<3>() += basis_[i].transpose() * (values[e] * basis_[j]);
         } else {
