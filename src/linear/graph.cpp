@@ -61,6 +61,29 @@ Schedule scheduleOf(const std::vector<std::uint32_t>& colours) {
 
 }  // namespace
 
+std::vector<std::uint32_t> componentsOf(const Graph& graph) {
+  constexpr std::uint32_t kNone = ~0u;
+  std::vector<std::uint32_t> component(graph.size(), kNone);
+  std::vector<std::uint32_t> reached;
+  std::uint32_t count = 0;
+  for (std::uint32_t start = 0; start < graph.size(); ++start) {
+    if (component[start] != kNone) continue;
+    component[start] = count;
+    reached = {start};
+    for (std::size_t n = 0; n < reached.size(); ++n) {
+      const std::uint32_t i = reached[n];
+      for (std::uint32_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+        const std::uint32_t j = graph.neighbours[e];
+        if (component[j] != kNone) continue;
+        component[j] = count;
+        reached.push_back(j);
+      }
+    }
+    ++count;
+  }
+  return component;
+}
+
 BlockOrder blockOrder(const Graph& graph, std::size_t block_size, int threads) {
   const std::size_t nodes = graph.size();
   const std::size_t count = (nodes + block_size - 1) / block_size;

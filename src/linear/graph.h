@@ -56,6 +56,9 @@ struct BlockOrder {
   std::size_t blocks() const { return first_node.size() - 1; }
 };
 
+/// The number of each node's connected component, from 0.
+std::vector<std::uint32_t> componentsOf(const Graph& graph);
+
 /// Blocks of `block_size` nodes whose order is already local. The blocks of each colour rise, so
 /// that a thread that takes its share of them in turn, or of all nodes, has about the same ones.
 BlockOrder blockOrder(const Graph& graph, std::size_t block_size, int threads);

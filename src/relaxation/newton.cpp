@@ -96,8 +96,9 @@ double Newton::largestExcess(const Stiffness& stiffness) const {
 
 /// `stiffness`: in units of the energy, as the gradient.
 double Newton::excessAt(std::size_t free, double stiffness) const {
-  const double torque = energy_.unit() * energy_.gradient().segment<2>(2 * free).norm();
-  const double felt = energy_.unit() * std::max(stiffness, 0.);
+  const double unit = energy_.unit(free);
+  const double torque = unit * energy_.gradient().segment<2>(2 * free).norm();
+  const double felt = unit * std::max(stiffness, 0.);
   return excessOf(torque, limit_->allowed(energy_.particle(free), felt));
 }
 
@@ -339,7 +340,7 @@ Eigen::VectorXd Newton::downwardDirection() {
   return minimum(probe, kProbeTolerance).downward;
 }
 
-/// Moves along a direction as far as that lowers the energy.
+/// Moves along a direction as far as that lowers the energy by more than rounding.
 bool Newton::goAlong(const Eigen::VectorXd& direction) {
   const double value = energy_.value();
   energy_.mark();
@@ -348,7 +349,7 @@ bool Newton::goAlong(const Eigen::VectorXd& direction) {
       if (guard_ && allowedShare(sign * length * direction) < 1) continue;
       energy_.move(sign * length * direction);
       evaluate();
-      if (energy_.value() < value) {
+      if (energy_.value() < (1 - kRounding) * value) {
         place(energy_.positions());
         return true;
       }

@@ -47,7 +47,9 @@ class Newton : public Descent {
   bool iterate() override;
   const char* whyStuck() const override;
   Points positions() const override { return energy_.positions(); }
-  double value() const override { return energy_.unit() * energy_.value(); }
+  double value() const override { return energy_.energy(); }
+  /// What the descent lowers: the sum of the groups' energies, each in its unit (`TangentEnergy`).
+  double scaledValue() const { return energy_.value(); }
   double maxTorque() const override { return energy_.maxTorque(); }
   double excess() const override { return excess_; }
 

@@ -19,6 +19,12 @@ std::vector<bool> freeParticles(const System& system, bool inertia) {
   return free;
 }
 
+/// The number of the first particle of a spring in the order here, where free ones come first.
+template <class Spring>
+std::uint32_t lowestOf(const Spring& spring) {
+  return *std::min_element(spring.particles.begin(), spring.particles.end());
+}
+
 }  // namespace
 
 TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
@@ -26,6 +32,8 @@ TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eige
       order_(particleOrder(freeParticles(system, inertia.size() > 0), positions)),
       pattern_(freeGraph(system, order_, threads_), threads_),
       far_apart_(farApart(pattern_.graph, pattern_.order, threads_)),
+      units_(inertia.size() > 0 ? std::vector<std::uint32_t>(freeCount(), 0)
+                                : componentsOf(pattern_.graph)),
       inertia_(std::move(inertia)) {
   forEachKind([&](auto kind) { compile<typename decltype(kind)::type>(system); });
   take(system);
@@ -41,13 +49,12 @@ void TangentEnergy::compile(const System& system) {
   auto& compiled = compiled_.get<Spring>();
   const auto& springs = system.springs<Spring>();
   const std::size_t blocks = pattern_.order.blocks();
-  const auto lowest = [&](const Spring& spring) {
-    std::uint32_t least = ~0u;
-    for (const std::uint32_t i : spring.particles) least = std::min(least, order_.numbers[i]);
-    return least;
+  const auto numbered = [&](Spring spring) {
+    for (std::uint32_t& i : spring.particles) i = order_.numbers[i];
+    return spring;
   };
   auto by_lowest = dealtOut<std::uint32_t>(order_.particles.size(), [&](const auto& visit) {
-    for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowest(springs[s]), s);
+    for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowestOf(numbered(springs[s])), s);
   });
   compiled.first.resize(blocks + 1);
   for (std::size_t b = 0; b <= blocks; ++b) {
@@ -61,9 +68,7 @@ void TangentEnergy::compile(const System& system) {
   compiled.springs.resize(springs.size());
   compiled.places.resize(springs.size());
   parallelFor(springs.size(), threads_, [&](std::ptrdiff_t s) {
-    Spring& spring = compiled.springs[s];
-    spring = springs[compiled.sources[s]];
-    for (std::uint32_t& i : spring.particles) i = order_.numbers[i];
+    const Spring& spring = compiled.springs[s] = numbered(springs[compiled.sources[s]]);
     for (std::size_t i = 0; i < kEnds; ++i) {
       for (std::size_t j = 0; j < kEnds; ++j) {
         compiled.places[s][kEnds * i + j] = placeOf(spring.particles[i], spring.particles[j]);
@@ -87,7 +92,7 @@ bool TangentEnergy::fits(const System& system) const {
     fits = fits && springs.size() == compiled.springs.size();
     for (std::size_t s = 0; fits && s < compiled.springs.size(); ++s) {
       const Spring& spring = springs[compiled.sources[s]];
-      const double stiffness = unit_ * compiled.springs[s].stiffness;
+      const double stiffness = unitOf(compiled.springs[s]) * compiled.springs[s].stiffness;
       fits = stiffness <= kMostChange * spring.stiffness &&
              spring.stiffness <= kMostChange * stiffness;
       for (std::size_t j = 0; j < Spring::kParticles; ++j) {
@@ -98,10 +103,14 @@ bool TangentEnergy::fits(const System& system) const {
   return fits;
 }
 
+template <class Spring>
+double TangentEnergy::unitOf(const Spring& spring) const {
+  const std::uint32_t lowest = lowestOf(spring);
+  return lowest < freeCount() ? unit(lowest) : 1;
+}
+
 void TangentEnergy::take(const System& system) {
-  unit_ = system.largestStiffness();
-  if (inertia_.size() > 0) unit_ = std::max(unit_, inertia_.maxCoeff());
-  if (unit_ == 0) unit_ = 1;
+  units_.take(system, order_, inertia_.size() > 0 ? inertia_.maxCoeff() : 0);
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     auto& compiled = compiled_.get<Spring>();
@@ -109,7 +118,7 @@ void TangentEnergy::take(const System& system) {
     parallelFor(compiled.springs.size(), threads_, [&](std::ptrdiff_t s) {
       Spring spring = springs[compiled.sources[s]];
       spring.particles = compiled.springs[s].particles;
-      spring.stiffness /= unit_;
+      spring.stiffness /= unitOf(spring);
       compiled.springs[s] = spring;
     });
   });
@@ -134,7 +143,7 @@ void TangentEnergy::place(const Points& positions) {
     const Vector3 point = positions.col(order_.particles[n]);
     places_[n] = {tangentFrame(point), point};
   });
-  findPinnedValue();
+  findPinnedEnergy();
 }
 
 void TangentEnergy::carry(const Points& positions) {
@@ -142,15 +151,15 @@ void TangentEnergy::carry(const Points& positions) {
     const Vector3 point = positions.col(order_.particles[n]);
     places_[n] = {carried(places_[n].frame, point), point};
   });
-  findPinnedValue();
+  findPinnedEnergy();
 }
 
-void TangentEnergy::findPinnedValue() {
-  pinned_value_ = 0;
+void TangentEnergy::findPinnedEnergy() {
+  pinned_energy_ = 0;
   forEachKind([&](auto kind) {
     const auto& compiled = compiled_.get<typename decltype(kind)::type>();
     for (std::size_t s = compiled.first.back(); s < compiled.springs.size(); ++s) {
-      pinned_value_ += addOne(compiled, s, Curvature::definite);
+      pinned_energy_ += addOne(compiled, s, Curvature::definite);
     }
   });
 }
@@ -226,16 +235,19 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
 }
 
 template <class Spring>
+std::array<Vector3, Spring::kParticles> TangentEnergy::pointsOf(const Spring& spring) const {
+  std::array<Vector3, Spring::kParticles> points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = places_[spring.particles[i]].point;
+  return points;
+}
+
+template <class Spring>
 double TangentEnergy::addOne(const Compiled<Spring>& compiled, std::size_t s, Curvature curvature) {
   constexpr std::size_t kEnds = Spring::kParticles;
   const Spring& spring = compiled.springs[s];
-  std::array<Vector3, kEnds> points;
   std::array<TangentFrame, kEnds> frames;
-  for (std::size_t i = 0; i < kEnds; ++i) {
-    points[i] = places_[spring.particles[i]].point;
-    frames[i] = places_[spring.particles[i]].frame;
-  }
-  const auto c = tangentCondition(spring, points, frames, curvature);
+  for (std::size_t i = 0; i < kEnds; ++i) frames[i] = places_[spring.particles[i]].frame;
+  const auto c = tangentCondition(spring, pointsOf(spring), frames, curvature);
   for (std::size_t i = 0; i < kEnds; ++i) {
     if (spring.particles[i] >= freeCount()) continue;
     gradient_.segment<2>(2 * spring.particles[i]) += spring.stiffness * c.value * c.gradient[i];
@@ -265,15 +277,30 @@ void TangentEnergy::evaluate(Curvature curvature) {
     });
     block_values_[block] = value;
   });
-  value_ = pinned_value_;
+  value_ = 0;
   for (const double value : block_values_) value_ += value;
   if (inertia_.size() > 0) addInertia(curvature);
+}
+
+double TangentEnergy::energy() const {
+  if (freeCount() == 0) return pinned_energy_;
+  if (!units_.differ()) return pinned_energy_ + unit(0) * value_;
+  double energy = pinned_energy_;
+  forEachKind([&](auto kind) {
+    const auto& compiled = compiled_.get<typename decltype(kind)::type>();
+    for (std::size_t s = 0; s < compiled.first.back(); ++s) {
+      const auto& spring = compiled.springs[s];
+      const double c = condition(spring, pointsOf(spring)).value;
+      energy += 0.5 * unitOf(spring) * spring.stiffness * c * c;
+    }
+  });
+  return energy;
 }
 
 // The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
 void TangentEnergy::addInertia(Curvature curvature) {
   for (std::size_t n = 0; n < freeCount(); ++n) {
-    const double stiffness = inertia_[order_.particles[n]] / unit_;
+    const double stiffness = inertia_[order_.particles[n]] / unit(n);
     const auto& [frame, point] = places_[n];
     const auto c = tangentCondition(AngleSpring(), {point, targets_[n]}, {frame, frame}, curvature);
     value_ += 0.5 * stiffness * c.value * c.value;
@@ -299,9 +326,9 @@ template std::vector<Eigen::Matrix<float, 2, 3>> TangentEnergy::rotations() cons
 template std::vector<Eigen::Matrix<double, 2, 3>> TangentEnergy::rotations() const;
 
 double TangentEnergy::maxTorque() const {
-  return unit_ * std::sqrt(parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {
-           return gradient_.segment<2>(2 * n).squaredNorm();
-         }));
+  return parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {
+    return unit(n) * gradient_.segment<2>(2 * n).norm();
+  });
 }
 
 Eigen::VectorXd TangentEnergy::reach() const {

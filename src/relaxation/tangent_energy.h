@@ -8,14 +8,16 @@
 
 #include "geometry/tangent_place.h"
 #include "linear/block_matrix.h"
-#include "relaxation/particle_order.h"
+#include "relaxation/group_units.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
 
-/// Energies are in units of `unit()`, the largest stiffness, so that single precision holds every
-/// Hessian. Free particles come in an order of their own, in which those that are joined are close;
-/// free particle f has the unknowns 2 f and 2 f + 1, its coordinates in a tangent frame of its own.
+/// The energy of each group of free particles that springs join is in the group's unit
+/// (`GroupUnits`), so that single precision holds every Hessian and no group is lost in the
+/// rounding of another. With inertia all free particles are one group. Free particles come in an
+/// order of their own, in which those that are joined are close; the unknowns 2 f and 2 f + 1 are
+/// the coordinates of free particle f in a tangent frame of its own.
 class TangentEnergy {
  public:
   using Hessian = Blocks<double, 2>;
@@ -30,7 +32,7 @@ class TangentEnergy {
   /// Takes rest and stiffness from a system that fits.
   void take(const System& system);
 
-  double unit() const { return unit_; }  ///< [J]
+  double unit(std::size_t free) const { return units_.of(free); }  ///< of its group [J]
   const BlockPattern& pattern() const { return pattern_; }
   std::size_t freeCount() const { return pattern_.rows(); }
 
@@ -50,7 +52,10 @@ class TangentEnergy {
   /// Value, gradient and Hessian where the particles are.
   void evaluate(Curvature curvature);
 
+  /// Sum over the groups, each in its unit. Springs between pinned particles are left out.
   double value() const { return value_; }
+  /// Energy of all springs, and the inertia's [J].
+  double energy() const;
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
   /// For each free particle, the matrix that takes a rotation vector of the scene to the particle's
@@ -89,22 +94,27 @@ class TangentEnergy {
   template <class Spring>
   void compile(const System& system);
   template <class Spring>
+  double unitOf(const Spring& spring) const;
+  template <class Spring>
+  std::array<Vector3, Spring::kParticles> pointsOf(const Spring& spring) const;
+  template <class Spring>
   double add(const Compiled<Spring>& compiled, std::size_t block, Curvature curvature);
   template <class Spring>
   double addOne(const Compiled<Spring>& compiled, std::size_t spring, Curvature curvature);
   void addInertia(Curvature curvature);
-  void findPinnedValue();
+  void findPinnedEnergy();
 
   int threads_;
   ParticleOrder order_;
   BlockPattern pattern_;
   Schedule far_apart_;  // of the pattern's blocks
   PerKind<Compiled> compiled_;
-  double unit_ = 1;
+  GroupUnits units_;
   Eigen::VectorXd inertia_;
   std::vector<Vector3> targets_;
   std::vector<TangentPlace> places_, marked_places_;
-  double value_ = 0, pinned_value_ = 0;
+  double value_ = 0;
+  double pinned_energy_ = 0;  // [J]
   Eigen::VectorXd gradient_;
   Hessian hessian_;
   std::vector<double> block_values_;

@@ -30,13 +30,18 @@ OrientedAngleSpring orientedSpring(std::array<std::uint32_t, 3> particles, doubl
   return spring;
 }
 
+RelaxationResult relaxedBy(RelaxationMethod method, const std::vector<Particle>& particles,
+                           const SpringLists& springs) {
+  const Scene scene = testing::sceneOf(particles, springs);
+  RelaxationOptions options;
+  options.method = method;
+  return relax(System(scene, {}), positionsOf(scene), options);
+}
+
 class Saddle : public ::testing::TestWithParam<RelaxationMethod> {
  protected:
   RelaxationResult relaxed(const std::vector<Particle>& particles, const SpringLists& springs) {
-    const Scene scene = testing::sceneOf(particles, springs);
-    RelaxationOptions options;
-    options.method = GetParam();
-    return relax(System(scene, {}), positionsOf(scene), options);
+    return relaxedBy(GetParam(), particles, springs);
   }
 };
 
@@ -80,6 +85,46 @@ TEST_P(Saddle, OfAnOrientedSpringIsAMinimumWhereOthersHoldIt) {
   const auto result = relaxed(std::vector<Particle>(3, testing::particleAt(kPole)), springs);
   EXPECT_TRUE(result.converged) << result.message;
   EXPECT_NEAR(result.energy_after, 0.005, 1e-12);
+}
+
+/// Three particles at 120 degrees on the equator with arcs of rest angle 1 between them, from
+/// `first`: a maximum of 1.80 J.
+void addMaximum(std::uint32_t first, std::vector<Particle>& particles, SpringLists& springs) {
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const double turn = 2 * kPi / 3 * i;
+    particles.push_back(testing::particleAt({std::cos(turn), std::sin(turn), 0}));
+    springs.get<AngleSpring>().push_back(stiffSpring(first + i, first + (i + 1) % 3, 1, 1));
+  }
+}
+
+void expectThreeArcsAtRest(const RelaxationResult& result, std::uint32_t first) {
+  EXPECT_TRUE(result.converged) << result.message;
+  EXPECT_LE(result.energy_after, result.energy_before);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const auto a = result.positions.col(first + i), b = result.positions.col(first + (i + 1) % 3);
+    EXPECT_NEAR(arc(a, b).angle, 1, 1e-8);
+  }
+}
+
+// The rounding of what they hold would hide the way down.
+TEST_P(Saddle, IsLeftBesideAStiffSpringBetweenPins) {
+  std::vector<Particle> particles = {testing::particleAt({1, 0, 0}),
+                                     testing::particleAt({0, 1, 0})};
+  particles[0].pinned = particles[1].pinned = true;
+  SpringLists springs;
+  springs.get<AngleSpring>() = {stiffSpring(0, 1, 0.5, 1e16)};
+  addMaximum(2, particles, springs);
+  expectThreeArcsAtRest(relaxed(particles, springs), 2);
+}
+
+// No other method has a time step for both.
+TEST(SaddleOfNewton, IsLeftBesideAStiffGroupUnderStrain) {
+  std::vector<Particle> particles = {testing::particleAt({1, 0, 0}),
+                                     testing::particleAt({0, 1, 0})};
+  SpringLists springs;
+  springs.get<AngleSpring>() = {stiffSpring(0, 1, 0.5, 1e20), stiffSpring(0, 1, 1, 1e20)};
+  addMaximum(2, particles, springs);
+  expectThreeArcsAtRest(relaxedBy(RelaxationMethod::newton, particles, springs), 2);
 }
 
 // Eigen finds the lowest eigenvalue of the same matrices, written densely.

@@ -42,8 +42,8 @@ TEST(TangentEnergy, ValueAndTorqueAreThoseOfTheSystem) {
     for (const Curvature curvature : {Curvature::exact, Curvature::definite}) {
       const auto energy = energyAt(system, positions, curvature);
       const double expected = system.potential(positions).total();
-      EXPECT_NEAR(energy.unit() * energy.value(), expected, 1e-13 * expected);
-      EXPECT_EQ(energy.unit(), system.largestStiffness());
+      EXPECT_NEAR(energy.energy(), expected, 1e-13 * expected);
+      EXPECT_EQ(energy.unit(0), system.largestStiffness());
       EXPECT_EQ(energy.positions(), positions);
       System::Workspace workspace;
       system.evaluate(positions, workspace);
@@ -170,7 +170,7 @@ TEST(TangentEnergy, FitsWhatDiffersInRestAndLittleInStiffness) {
   energy.place(positions);
   energy.evaluate(Curvature::exact);
   const auto fresh = energyAt(other, positions, Curvature::exact);
-  EXPECT_EQ(energy.unit(), 2);
+  EXPECT_EQ(energy.unit(0), 2);
   EXPECT_EQ(energy.value(), fresh.value());
   EXPECT_EQ(energy.gradient(), fresh.gradient());
   EXPECT_EQ(energy.hessian(), fresh.hessian());
