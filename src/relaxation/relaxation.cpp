@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "relaxation/damped_dynamics.h"
@@ -80,6 +81,13 @@ class Relaxation {
     unsigned stuck = 0;
     for (unsigned attempt = 0; attempt < kAttempts; ++attempt) {
       const Outcome outcome = descend();
+      if (flat_ && !isBelowFlat()) {
+        if (outcome != Outcome::ended && leaveFlat()) continue;
+        goBackToFlat();
+        if (outcome != Outcome::ended) converge();
+        return;
+      }
+      flat_.reset();
       if (outcome == Outcome::ended) return;
       const bool at_minimum = outcome == Outcome::within_limit && mayBeTheEnd();
       if (at_minimum) keep();
@@ -88,9 +96,10 @@ class Relaxation {
         break;
       }
       if (at_minimum) {
-        if (leaveSaddle() || leaveFlat()) continue;
-        result_.converged = true;
-        result_.message = "converged";
+        if (leaveSaddle()) continue;
+        flat_ = result_.positions;
+        if (leaveFlat()) continue;
+        converge();
         return;
       }
       if (outcome == Outcome::stuck) {
@@ -127,18 +136,39 @@ class Relaxation {
     return true;
   }
 
+  void converge() {
+    result_.converged = true;
+    result_.message = "converged";
+  }
+
   /// Starts again, a few times in all, beside springs that are flat (`isFlat`), as their energy may
-  /// fall though no torque and no curvature shows it. Where the way leads back, it is a minimum.
+  /// fall though no torque and no curvature shows it. Where the way leads no lower than `flat_`,
+  /// that is a minimum.
   bool leaveFlat() {
     constexpr unsigned kAttempts = 2;
     constexpr double kDistance = 0.05;  // [rad]
     if (options_.keep_orientation || flat_attempts_ >= kAttempts) return false;
+    const Points& from = flat_ ? *flat_ : result_.positions;
     const Points beside =
-        besideFlat(system_, result_.positions, kDistance * (flat_attempts_ + 1), flat_attempts_);
-    if (beside == result_.positions) return false;
+        besideFlat(system_, from, kDistance * (flat_attempts_ + 1), flat_attempts_);
+    if (beside == from) return false;
     ++flat_attempts_;
     descent_->place(beside);
     return true;
+  }
+
+  /// Whether the descent has come lower than it was at `flat_`, by more than rounding.
+  bool isBelowFlat() {
+    const Points reached = descent_->positions();
+    newton_.place(*flat_);
+    const double at_flat = newton_.scaledValue();
+    newton_.place(reached);
+    return newton_.scaledValue() < (1 - kEnergyRounding) * at_flat;
+  }
+
+  void goBackToFlat() {
+    descent_->place(*flat_);
+    keep();
   }
 
   // A minimum is approached to below the limit, so that it is within it however rounding, and the
@@ -253,6 +283,7 @@ class Relaxation {
   RelaxationResult result_;
   double excess_ = 0;  // of the result
   unsigned flat_attempts_ = 0;
+  std::optional<Points> flat_;  // a minimum by its torque and curvature that was left, to be sure
 };
 
 }  // namespace

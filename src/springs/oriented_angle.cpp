@@ -43,8 +43,10 @@ void rest(OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {
 }
 
 bool isFlat(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {
-  constexpr double kFlat = 1e-3;  // [rad]; further away the torque shows
-  return spring.rest_angle != 0 && (points[1] - points[0]).norm() < kFlat;
+  constexpr double kFlat = 1e-3;    // [rad]; further away the torque shows
+  constexpr double kAtRest = 1e-3;  // of the angle at rest; little energy is left there
+  if (!((points[1] - points[0]).norm() < kFlat)) return false;
+  return std::abs(condition(spring, points).value) > kAtRest * std::abs(spring.rest_angle);
 }
 
 Condition<3> condition(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points) {

@@ -54,9 +54,9 @@ constexpr double distanceToUndefined(const OrientedAngleSpring&, const std::arra
   return std::numeric_limits<double>::infinity();
 }
 
-/// Returns whether the first two of three unit vectors are within 1e-3 of each other, though the
-/// angle at rest is not 0. The energy falls there as the angle times the triple product, an odd
-/// function of the way between the two, which neither torque nor curvature need show.
+/// Returns whether the first two of three unit vectors are within 1e-3 of each other, and C is not
+/// small beside the rest angle. The energy falls there as the angle times the triple product, odd
+/// in the way between the two, which neither torque nor curvature need show.
 bool isFlat(const OrientedAngleSpring& spring, const std::array<Vector3, 3>& points);
 
 /// Returns C [rad] and its gradients at three unit vectors; where the first two coincide or are
