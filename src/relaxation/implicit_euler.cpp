@@ -71,7 +71,7 @@ bool ImplicitEuler::descend(const Points& positions, const Points& targets) {
 
 // On a plane the new velocity would be that of the inertial position, plus the way from there over
 // the step. Here the sum is taken as it stands, so that free spinning goes on however large the
-// step, and its part along the position dropped.
+// step, and its part along the position dropped, so that a scene which is saved and read keeps it.
 void ImplicitEuler::takeVelocities(const Points& targets, State& state) const {
   for (Eigen::Index i = 0; i < targets.cols(); ++i) {
     if (system_->pinned(i)) continue;
@@ -79,7 +79,7 @@ void ImplicitEuler::takeVelocities(const Points& targets, State& state) const {
     const Arc way = arc(targets.col(i), position);
     Vector3 velocity = state.angular_velocities.col(i);
     velocity += way.angle / time_step_ * way.axis;
-    state.angular_velocities.col(i) = velocity - position.dot(velocity) * position;
+    state.angular_velocities.col(i) = tangentPart(position, velocity);
   }
 }
 
@@ -89,7 +89,11 @@ void ImplicitEuler::boundEnergy(double most, State& state) const {
   const double kinetic = system_->kinetic(state.angular_velocities);
   const double allowed = most - system_->potential(state.positions).total();
   if (kinetic <= allowed || kinetic == 0) return;
-  state.angular_velocities *= std::sqrt(std::max(allowed, 0.) / kinetic);
+  const double factor = std::sqrt(std::max(allowed, 0.) / kinetic);
+  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
+    const Vector3 velocity = factor * state.angular_velocities.col(i);
+    state.angular_velocities.col(i) = tangentPart(state.positions.col(i), velocity);
+  }
 }
 
 }  // namespace spherical_springs::core

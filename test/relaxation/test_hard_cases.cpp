@@ -213,6 +213,26 @@ TEST(ImplicitEuler, MakesNoEnergyWhereTheSpringsAreNotConvex) {
 }
 
 // Where an unconverged minimum leaves no energy for the velocities, and there are none.
+// A scene that is read drops what velocities have along the positions.
+TEST(ImplicitEuler, LeavesVelocitiesThatReadingKeepsToTheLastBit) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Scene soft = testing::randomScene(seed, 10, 8, 1);
+    SpringLists springs = testing::springsOf(soft);
+    forEachKind([&](auto kind) {
+      for (auto& spring : springs.get<typename decltype(kind)::type>()) spring.stiffness *= 1e10;
+    });
+    const auto& items = soft.particles().items();
+    const Scene scene = testing::sceneOf({items.begin(), items.end()}, springs);
+    for (const int steps : {1, 2}) {
+      const State state = Trajectory(scene, "implicit_euler", 1, steps).state;
+      for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
+        const Vector3 velocity = state.angular_velocities.col(i);
+        EXPECT_EQ(tangentPart(state.positions.col(i), velocity), velocity) << seed << " " << i;
+      }
+    }
+  }
+}
+
 TEST(ImplicitEuler, OfImpossibleSpringsStaysSound) {
   SpringLists springs = arcs({angleSpring(0, 1, 1), angleSpring(0, 1, kPi)});
   springs.get<AngleSpring>()[0].damping = 1e30;
