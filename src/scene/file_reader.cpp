@@ -20,6 +20,8 @@ void requireFormat(const std::string& format) {
   throw std::invalid_argument("format is " + quoted(format) + "; allowed: " + kSceneFormat);
 }
 
+constexpr const char* kMore = "there is more after the end of the scene";
+
 /// Where the text is no JSON.
 struct TextFault : std::invalid_argument {
   TextFault(std::size_t byte, const std::string& reason)
@@ -103,7 +105,7 @@ class SceneEvents {
     constexpr int kOverflow = 406;  // the library's number of it
     if (fault.id == kOverflow)
       throw TextFault(byte, "the number " + shortened(read) + " is too large");
-    if (closed_) throw TextFault(byte, "there is more after the end of the scene");
+    if (closed_) throw TextFault(byte, kMore);
     if (source_.hasEnded()) throw TextFault(byte, "the text ends before the scene does");
     throw TextFault(byte, "this is not JSON: " + quoted(lastOf(read)));
   }
@@ -177,6 +179,8 @@ SceneFile read(std::istream& in, const SceneLimits& limits) {
   try {
     SceneEvents events(source, lists);
     Json::sax_parse(counted, &events);
+    // The parser takes a byte that is 0 for the end of the text.
+    if (!source.hasEnded()) throw TextFault(source.offset(), kMore);
     const double time = events.time();
     finished = true;
     return {lists.scene(), time};

@@ -157,6 +157,19 @@ TEST_F(WrongSceneFiles, AreRefusedWithTheByte) {
       << refusal;
 }
 
+TEST_F(WrongSceneFiles, WithAByteOfZeroAfterTheEndAreRefused) {
+  const std::string scene = R"({"format": "spherical_springs scene 1"})";
+  const std::string zero(1, '\0');
+  EXPECT_EQ(refusalOf(scene + "\n"), "not refused");
+  for (const std::string& more : {zero, zero + "}garbage", "\n" + zero + "\n"}) {
+    const std::size_t byte = scene.size() + more.find('\0') + 1;
+    EXPECT_NE(
+        refusalOf(scene + more)
+            .find("at byte " + std::to_string(byte) + ": there is more after the end of the scene"),
+        std::string::npos);
+  }
+}
+
 TEST_F(WrongSceneFiles, TruncatedAnywhereAreRefused) {
   writeScene(path_, testing::randomScene(1, 4, 2), 1);
   std::stringstream text;
