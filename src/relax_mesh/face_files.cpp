@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "relax_mesh/byte_order_mark.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::mesh {
@@ -13,6 +14,7 @@ Values readDensities(std::istream& in, Eigen::Index faces, const core::Checkpoin
   const core::Range allowed{0, std::numeric_limits<double>::max(), "a positive number", true};
   Values densities(faces);
   Eigen::Index count = 0;
+  skipByteOrderMark(in);
   for (std::string text; in >> text; ++count) {
     checkpoint();
     char* end;

@@ -6,10 +6,10 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/files.h"
+#include "relax_mesh/byte_order_mark.h"
 
 // A reader of our own: doc/history/obj_readers.md says what libraries do with files at fault.
 
@@ -17,7 +17,6 @@ namespace spherical_springs::mesh {
 namespace {
 
 constexpr int kCorners = 3;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some programs begin texts with it
 
 [[noreturn]] void refuse(std::size_t line, const std::string& reason) {
   throw std::invalid_argument("line " + std::to_string(line) + ": " + reason);
@@ -103,9 +102,9 @@ TriangleMesh readObj(std::istream& in, const core::Checkpoint& checkpoint) {
   int highest = -1;
   std::string line;
   const char* rest;
+  skipByteOrderMark(in);
   while (std::getline(in, line)) {
     checkpoint();
-    if (last_line == 0 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     ++last_line;
     if (begins(line, 'v', rest)) {
       vertices.push_back(parseVertex(last_line, rest));

@@ -24,6 +24,16 @@ TEST(Densities, AreReadInOrder) {
   EXPECT_EQ(Eigen::Vector3d(1, 2.5, 1e-3), readDensities(in, 3));
 }
 
+TEST(Densities, MayBeginWithAByteOrderMark) {
+  for (const std::string mark : {"\xEF\xBB\xBF", "\xEF\xBB\xBF\r\n"}) {
+    std::istringstream in(mark + "1 2.5");
+    EXPECT_EQ(Eigen::Vector2d(1, 2.5), readDensities(in, 2));
+  }
+  const std::string later = "\xEF\xBB\xBF" + std::string("2");
+  EXPECT_EQ("density 1 is " + later + "; allowed: a positive number",
+            reasonAgainst("1 " + later, 2));
+}
+
 TEST(Densities, AreRefusedUnlessPositiveAndOneAFace) {
   EXPECT_EQ("density 1 is 0; allowed: a positive number", reasonAgainst("1 0 2", 3));
   EXPECT_EQ("density 0 is -1; allowed: a positive number", reasonAgainst("-1 1 2", 3));
