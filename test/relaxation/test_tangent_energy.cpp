@@ -160,6 +160,32 @@ Scene ringScene(const SpringLists& springs, std::vector<std::uint32_t> pins = {}
   return testing::pinnedScene(testing::sceneOf(particles, springs), pins);
 }
 
+TEST(TangentEnergy, HasAUnitForEachGroup) {
+  SpringLists springs =
+      testing::arcs({testing::angleSpring(0, 1, 0.5), testing::angleSpring(2, 3, 1),
+                     testing::angleSpring(3, 4, 1), testing::angleSpring(5, 6, 1),
+                     testing::angleSpring(6, 7, 1)});
+  auto& arcs = springs.get<AngleSpring>();
+  const double stiffness[] = {1e16, 0.5, 2, 1e15, 3e16};
+  for (std::size_t i = 0; i < arcs.size(); ++i) arcs[i].stiffness = stiffness[i];
+  const Scene scene = ringScene(springs, {5, 6}, 8);
+  const System system(scene, {});
+  const auto energy = energyAt(system, positionsOf(scene), Curvature::exact);
+  double value = 0;
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    const auto c = condition(arcs[i], System::points(arcs[i], positionsOf(scene))).value;
+    const double unit = i == 1 || i == 2 ? 2 : 3e16;
+    if (i != 3) value += 0.5 * stiffness[i] / unit * c * c;  // which is between pins
+  }
+  for (std::size_t f = 0; f < energy.freeCount(); ++f) {
+    const std::uint32_t i = energy.particle(f);
+    EXPECT_EQ(energy.unit(f), i >= 2 && i <= 4 ? 2 : 3e16) << i;
+  }
+  EXPECT_NEAR(energy.value(), value, 1e-14 * value);
+  const double total = system.potential(positionsOf(scene)).total();
+  EXPECT_NEAR(energy.energy(), total, 1e-14 * total);
+}
+
 TEST(TangentEnergy, FitsWhatDiffersInRestAndLittleInStiffness) {
   const Scene scene = ringScene(ring(0.5, 1), {1});
   const Points positions = positionsOf(scene);
