@@ -15,6 +15,7 @@
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/measures.h"
 #include "spherical_springs/relaxation.h"
+#include "support/tumbling_scenes.h"
 #include "transcription/report.h"
 
 namespace {
@@ -125,7 +126,9 @@ std::vector<Case> cases() {
           {"figure 3", sceneOf(spread(0.5), triangleOfArcs(0, 1)), 10, nullptr},
           {"mesh", mesh(0), 5, nullptr},
           {"damped mesh", mesh(0.2), 5, nullptr},
-          {"stiff", sceneOf(spread(0), triangleOfArcs(0, 1e6)), 0.2, nullptr}};
+          {"stiff", sceneOf(spread(0), triangleOfArcs(0, 1e6)), 0.2, nullptr},
+          // Until its way depends on all that came before.
+          {"tumbling", testing::tumblingScene(3), 4, nullptr}};
 }
 
 // --- stepping ---

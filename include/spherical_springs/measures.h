@@ -29,18 +29,23 @@ class Account {
   /// Begins at a state.
   Account(const Plan& plan, const State& state);
 
-  /// |total + dissipated - its value at the beginning| / the largest total since.
-  double energyError(const Energies& now);
+  /// |total + dissipated - its value at the beginning| / the total at the beginning, which counts as
+  /// at least what rounding makes of the stiffest spring.
+  double energyError(const Energies& now) const;
+
+  /// The share of the steps since the beginning that were divided.
+  double dividedSteps(const Progress& now) const;
 
   /// |L - its value at the beginning| / the largest sum of |m omega| since; 0 in a scene that does
   /// not conserve it.
   double angularMomentumError(const System& system, const State& state);
 
  private:
-  const double energy_;
+  const double energy_, scale_;
   const Vector3 momentum_;
+  const std::uint64_t first_step_;
   std::mutex mutex_;  // guards what follows
-  double largest_total_, largest_momentum_;
+  double largest_momentum_;
 };
 
 /// How well a simulation keeps what it should keep, and what its step costs in accuracy.
@@ -48,10 +53,13 @@ class Account {
 struct Measures {
   double stable_time_step = 0;  ///< the largest that the method bears here [s]; may be infinite
   double local_error = 0;       ///< estimated, of one step [rad]
+  double error_rate = 0;        ///< local_error by the time step [rad/s]
   double energy_error = 0;      ///< as Account has it
   double angular_momentum_error = 0;  ///< as Account has it
   double norm_error = 0;              ///< max | |p| - 1 |
   double max_torque = 0;              ///< on a particle that is not pinned [N m]
+  double divided_steps = 0;           ///< as Account has it
+  double shortest_substep = 0;        ///< of these since the account began [s]; 0 where there is none
   bool blown_up = false;              ///< the energy is far from what it was when the account began
   std::string warning;  ///< what is wrong with the step, in words; empty when nothing is
 };

@@ -19,7 +19,7 @@ namespace spherical_springs::core {
 /// \snippet test_headers.cpp simulation
 class Simulation {
  public:
-  /// Choices that last as long as the simulation.
+  /// Choices that last as long as the simulation, but for those that `stepBy` changes.
   struct Settings {
     IntegrationMethod method = IntegrationMethod::verlet;  ///< of `step`
     double time_step = 0.001;                              ///< [s]
@@ -55,7 +55,12 @@ class Simulation {
   /// @throw std::invalid_argument as Scene::reserveIdsOf does.
   void load(SceneFile file);
 
-  /// Steps of the settings' time step: all of them, or none where memory runs out.
+  /// Chooses the method and the time step [s] of the steps to come. Scene, state, time and account
+  /// go on.
+  /// @throw std::invalid_argument unless the time step is above 0 and finite.
+  void stepBy(IntegrationMethod method, double time_step);
+
+  /// Steps of the present time step: all of them, or none where memory runs out.
   void step(std::uint64_t steps = 1);
 
   /// Puts the particles, at rest, at `positions`, where a relaxation has brought them: one unit
@@ -66,7 +71,8 @@ class Simulation {
   /// Puts back an earlier state of the same scene, with as many particles.
   void restore(State state);
 
-  const Settings& settings() const { return settings_; }  ///< as they were given
+  /// Returns the settings, with the method and the time step that were chosen last.
+  const Settings& settings() const { return settings_; }
   const Scene& scene() const { return scene_; }  ///< with particles where they were last set
   const State& state() const;                    ///< where the particles are now
   Scene presentScene() const;                    ///< with the particles where they are now

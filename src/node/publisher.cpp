@@ -117,9 +117,12 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   measures.max_torque = core::maxTorque(*snapshot.plan, state);
   message.stable_time_step = std::min(Parameters::kLongestTimeStep, measures.stable_time_step);
   message.local_error = measures.local_error;
+  message.error_rate = measures.error_rate;
   message.energy_error = measures.energy_error;
   message.angular_momentum_error = measures.angular_momentum_error;
   message.norm_error = measures.norm_error;
+  message.divided_steps = measures.divided_steps;
+  message.shortest_substep = measures.shortest_substep;
   message.max_torque = measures.max_torque;
   report.warning = measures.warning;
   report.blown_up = measures.blown_up;

@@ -44,8 +44,8 @@ void DampedDynamics::chooseTimeStep() {
   constexpr double kLongest = 1e6;  // where nothing swings [s]
   const SplittingScheme& verlet = splittingScheme(IntegrationMethod::verlet);
   const double stable = verlet.stability_limit / highestFrequency(system_, state_.positions);
-  integrator_ = std::make_unique<BlockedSplitting>(plan_, verlet,
-                                                   std::min(kShareOfStable * stable, kLongest));
+  integrator_ = std::make_unique<BlockedSplitting>(
+      plan_, verlet, std::min(kShareOfStable * stable, kLongest), Passing::ignored);
 }
 
 /// Cuts the last step, from `from`, to what the guard allows.

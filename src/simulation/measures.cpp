@@ -28,17 +28,25 @@ double sumOfMomenta(const System& system, const State& state) {
 
 }  // namespace
 
+// What rounding of angles and solid angles makes of the energy of a spring, by its stiffness
+// [rad^2] or [sr^2].
+constexpr double kRounding = 1e-20;
+
 Account::Account(const Plan& plan, const State& state)
     : energy_(energies(plan, state).total() + state.dissipated),
+      scale_(std::max(energy_ - state.dissipated, kRounding * plan.system()->largestStiffness())),
       momentum_(plan.system()->angularMomentum(state.angular_velocities)),
-      largest_total_(energy_ - state.dissipated),
+      first_step_(state.steps),
       largest_momentum_(sumOfMomenta(*plan.system(), state)) {}
 
-double Account::energyError(const Energies& now) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  largest_total_ = std::max(largest_total_, now.total());
-  if (largest_total_ == 0) return 0;
-  return std::abs(now.total() + now.dissipated - energy_) / largest_total_;
+double Account::energyError(const Energies& now) const {
+  const double change = std::abs(now.total() + now.dissipated - energy_);
+  return change == 0 ? 0 : change / scale_;
+}
+
+double Account::dividedSteps(const Progress& now) const {
+  const std::uint64_t steps = now.steps - first_step_;
+  return steps == 0 ? 0 : static_cast<double>(now.divided_steps) / steps;
 }
 
 double Account::angularMomentumError(const System& system, const State& state) {
@@ -80,23 +88,36 @@ namespace {
 
 /// Whether the energy has gone astray, by more than rounding can do to springs that are all but at
 /// rest.
-bool blownUp(const Measures& measures, IntegrationMethod method, const System& system,
-             const Energies& now) {
-  constexpr double kAstray = 0.1;      // of the energy
-  constexpr double kRounding = 1e-20;  // [rad^2] or [sr^2]
+bool blownUp(const Measures& measures, IntegrationMethod method, const Energies& now) {
+  constexpr double kAstray = 0.1;  // of the energy
   if (!std::isfinite(now.total())) return true;
-  return !takesEnergyOut(method) && measures.energy_error > kAstray &&
-         now.total() > kRounding * system.largestStiffness();
+  return !takesEnergyOut(method) && measures.energy_error > kAstray;
 }
+
+/// Rounds to two significant digits.
+double rounded(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", number);
+  return std::strtod(text, nullptr);
+}
+
+std::string roundedText(double number) { return toText(rounded(number)); }
 
 /// Returns a share in percent with two significant digits, below 1e6 % without an exponent.
 std::string percentOf(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", 100 * share);
-  const double percent = std::strtod(text, nullptr);
+  const double percent = rounded(100 * share);
   if (!(percent < 1e6)) return toText(percent);
+  char text[32];
   std::snprintf(text, sizeof text, "%.0f", percent);
   return text;
+}
+
+/// Returns what the passage with the shortest step was; empty where there was none.
+std::string passageIn(const Passage& shortest) {
+  if (shortest.substep == 0) return "";
+  return std::string(shortest.kind) + " " + std::to_string(shortest.spring_id) + " passed " +
+         roundedText(shortest.distance) + " from " + shortest.place + " at t = " +
+         toText(shortest.time) + " s";
 }
 
 std::string warningOf(const Measures& measures, double time_step, const State& state) {
@@ -105,15 +126,21 @@ std::string warningOf(const Measures& measures, double time_step, const State& s
            " steps of implicit_euler ended before their minimum, where rounding or a triangle "
            "without area stopped them: they are sound, but less exact";
   }
+  const std::string step = "the time step of " + toText(time_step) + " s";
+  const std::string stable = toText(measures.stable_time_step) + " s";
   if (measures.blown_up) {
-    return "the energy is off by " + percentOf(measures.energy_error) +
-           " % since the account began: the time step of " + toText(time_step) +
-           " s is too long for this scene (stable here: " + toText(measures.stable_time_step) +
-           " s)";
+    const std::string off = "the energy is off by " + percentOf(measures.energy_error) +
+                            " % since the account began";
+    if (time_step > measures.stable_time_step) {
+      return off + ": " + step + " is too long for this scene (stable here: " + stable + ")";
+    }
+    const std::string passed = passageIn(state.shortest);
+    return off + ", though " + step + " is below the stable one here, " + stable +
+           (passed.empty() ? "" : ": " + passed + "; such passages are shorter than any step") +
+           "; a shorter step, or fourth_order, keeps it better";
   }
   if (time_step > measures.stable_time_step) {
-    return "the time step of " + toText(time_step) + " s is above the stable one, " +
-           toText(measures.stable_time_step) + " s";
+    return step + " is above the stable one, " + stable;
   }
   return "";
 }
@@ -131,7 +158,10 @@ Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod meth
   result.angular_momentum_error = account.angularMomentumError(system, state);
   result.norm_error = normError(state);
   result.max_torque = maxTorque(*plan, state);
-  result.blown_up = blownUp(result, method, system, now);
+  result.error_rate = result.local_error / time_step;
+  result.divided_steps = account.dividedSteps(state);
+  result.shortest_substep = state.shortest.substep;
+  result.blown_up = blownUp(result, method, now);
   result.warning = warningOf(result, time_step, state);
   return result;
 }

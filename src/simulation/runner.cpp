@@ -71,6 +71,11 @@ void Runner::setRunning(bool running) {
   running_ = running;
 }
 
+void Runner::stepBy(IntegrationMethod method, double time_step) {
+  const Lock lock(mutex_);
+  simulation_.stepBy(method, time_step);
+}
+
 // One step shows how many more there is time for.
 std::uint64_t Runner::stepForASlice(std::uint64_t most) {
   using Seconds = std::chrono::duration<double>;
@@ -289,6 +294,8 @@ Runner::Snapshot Runner::snapshot() {
     now.state = simulation_.state();
     now.plan = simulation_.plan();
     now.account = simulation_.begunAccount();
+    now.method = simulation_.settings().method;
+    now.time_step = simulation_.settings().time_step;
     now.step_wall_time = step_wall_time_;
     revision = simulation_.revision();
     const ControlLock control(control_);

@@ -73,6 +73,10 @@ class Runner {
   /// @throw Refusal while a step or relaxation is under way.
   void setRunning(bool running);
 
+  /// Chooses the method and the time step [s] as `Simulation::stepBy` does, between two steps,
+  /// whatever is under way.
+  void stepBy(IntegrationMethod method, double time_step);
+
   /// Up to `steps` steps in the time that `wall_time` [s] allows, if running and idle.
   /// @return how many were done.
   std::uint64_t advance(std::uint64_t steps, double wall_time);
@@ -101,6 +105,8 @@ class Runner {
     State state;  ///< of a relaxation under way, the best so far
     std::shared_ptr<const Plan> plan;
     std::shared_ptr<Account> account;
+    IntegrationMethod method;
+    double time_step;  ///< [s]
     bool running;
     Activity activity;
     double relax_progress;  ///< 0 to 1 while relaxing

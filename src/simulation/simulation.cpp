@@ -1,6 +1,10 @@
 #include "spherical_springs/simulation.h"
 
+#include <cmath>
+#include <stdexcept>
 #include <utility>
+
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -47,7 +51,10 @@ State& Simulation::changeState() {
 
 /// Follows a change of positions and velocities, under which the plan holds.
 void Simulation::moved() {
-  changeState().dissipated = 0;
+  State& state = changeState();
+  state.dissipated = 0;
+  state.divided_steps = 0;
+  state.shortest = {};
   account_.reset();
 }
 
@@ -143,6 +150,17 @@ void Simulation::load(SceneFile file) {
 void Simulation::beginAt(State start) {
   changeState() = std::move(start);
   topologyChanged();
+}
+
+void Simulation::stepBy(IntegrationMethod method, double time_step) {
+  if (!(time_step > 0 && std::isfinite(time_step))) {
+    throw std::invalid_argument("time_step is " + toText(time_step) + "; allowed: above 0 [s]");
+  }
+  state();
+  integrator_has_state_ = false;
+  integrator_.reset();
+  settings_.method = method;
+  settings_.time_step = time_step;
 }
 
 void Simulation::step(std::uint64_t steps) {

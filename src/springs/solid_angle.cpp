@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "springs/skew.h"
+#include "springs/solid_angle_value.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -18,6 +19,13 @@ double wrappedDifference(double angle, double rest) {
 
 }  // namespace
 
+double conditionValue(const SolidAngleSpring& spring, const Triangle& triangle) {
+  const bool is_defined = triangle.squared_norm > 0;
+  const double angle =
+      is_defined ? 2 * std::atan2(triangle.triple_product, triangle.denominator) : 0;
+  return wrappedDifference(angle, spring.rest_solid_angle);
+}
+
 void rest(SolidAngleSpring& spring, const std::array<Vector3, 3>& points) {
   spring.rest_solid_angle = solidAngle(points[0], points[1], points[2]);
 }
@@ -30,13 +38,11 @@ Condition<3> condition(const SolidAngleSpring& spring, const std::array<Vector3,
   const auto& [a, b, c] = points;
   const Triangle t = triangle(a, b, c);
   if (t.squared_norm == 0) {
-    return {wrappedDifference(0, spring.rest_solid_angle),
-            {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()}};
+    return {conditionValue(spring, t), {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()}};
   }
   const double alpha = 2 * t.triple_product / t.squared_norm;
   const double beta = 2 * t.denominator / t.squared_norm;
-  const double angle = 2 * std::atan2(t.triple_product, t.denominator);
-  return {wrappedDifference(angle, spring.rest_solid_angle),
+  return {conditionValue(spring, t),
           {a.cross(beta * crossOfUnits(b, c) - alpha * sumOfUnits(b, c)),
            b.cross(beta * crossOfUnits(c, a) - alpha * sumOfUnits(c, a)),
            c.cross(beta * crossOfUnits(a, b) - alpha * sumOfUnits(a, b))}};
@@ -50,16 +56,14 @@ TangentCondition<3> tangentCondition(const SolidAngleSpring& spring,
                                      Curvature curvature) {
   const Triangle t = triangle(points[0], points[1], points[2]);
   TangentCondition<3> result;
+  result.value = conditionValue(spring, t);
   for (auto& row : result.hessian) row.fill(Eigen::Matrix2d::Zero());
   if (t.squared_norm == 0) {
-    result.value = wrappedDifference(0, spring.rest_solid_angle);
     result.gradient.fill(Eigen::Vector2d::Zero());
     return result;
   }
   const double alpha = t.triple_product / t.squared_norm;
   const double beta = t.denominator / t.squared_norm;
-  result.value =
-      wrappedDifference(2 * std::atan2(t.triple_product, t.denominator), spring.rest_solid_angle);
   std::array<Eigen::Vector2d, 3> u, v;
   for (int i = 0; i < 3; ++i) {
     const Vector3& next = points[(i + 1) % 3];

@@ -30,13 +30,15 @@ constexpr double kShortest = 1e-16;  // of a quarter of a squared chord, and of 
 /// The formula of `AngleSpring`.
 struct AngleLanes {
   Lanes angle, sine;
+  Lanes near, far;    ///< quarters of the squared chord and of its supplement's
   Lanes3 chord, sum;  ///< b - a and a + b
   Lanes3 beside;      ///< whose cross product with a is a x b and does not cancel
   LaneMask is_far;    ///< `beside` is a + b; elsewhere b - a
   LaneMask hard;
 
   [[gnu::always_inline]] AngleLanes(const Lanes3& a, const Lanes3& b) : chord(b - a), sum(a + b) {
-    const Lanes near = 0.25 * dot(chord, chord), far = 0.25 * dot(sum, sum);
+    near = 0.25 * dot(chord, chord);
+    far = 0.25 * dot(sum, sum);
     const LaneMask is_near = near < 0.25;
     is_far = far < 0.25;
     const Lanes cosine = far - near;

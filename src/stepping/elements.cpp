@@ -10,12 +10,6 @@ namespace {
 
 using Places = std::vector<std::uint32_t>;
 
-/// Returns whether a spring is the same when its ends are turned round.
-template <class Spring>
-constexpr bool isCyclic() {
-  return kHasStepKernels<Spring> && Spring::kCorners == Spring::kParticles;
-}
-
 /// A spring alone; turned to have the first end first where that is the same.
 template <class Spring>
 Element elementOf(const SpringList<Spring>& springs, std::uint32_t index, const Places& places) {
@@ -30,15 +24,6 @@ Element elementOf(const SpringList<Spring>& springs, std::uint32_t index, const 
     std::rotate(begin, std::min_element(begin, end), end);
   }
   return element;
-}
-
-/// Returns the numbers that make a spring what it is.
-template <class Spring>
-std::vector<double> fieldsOf(const Spring& spring) {
-  std::vector<double> fields;
-  Spring::visitFields(spring,
-                      [&](const char*, double value, const Range&) { fields.push_back(value); });
-  return fields;
 }
 
 /// Elements of one spring each, of those that are wanted, by their ends and, where those are the

@@ -1,6 +1,7 @@
 // Springs in the order of their particles along the curve, arcs joined with triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -32,6 +33,35 @@ struct ElementLists {
 
 /// `places`: of each particle in the order.
 ElementLists elementsOf(const System& system, const std::vector<std::uint32_t>& places);
+
+/// Returns whether a spring is the same when its ends are turned round.
+template <class Spring>
+constexpr bool isCyclic() {
+  return kHasStepKernels<Spring> && Spring::kCorners == Spring::kParticles;
+}
+
+/// Returns a spring with the end first whose place is the lowest, where its ends may be turned
+/// round, so that rounding does not depend on how it was sent.
+template <class Spring>
+Spring turned(Spring spring, const std::vector<std::uint32_t>& places) {
+  if (isCyclic<Spring>()) {
+    auto& ends = spring.particles;
+    std::rotate(ends.begin(),
+                std::min_element(ends.begin(), ends.end(),
+                                 [&](auto a, auto b) { return places[a] < places[b]; }),
+                ends.end());
+  }
+  return spring;
+}
+
+/// Returns the numbers that make a spring what it is.
+template <class Spring>
+std::vector<double> fieldsOf(const Spring& spring) {
+  std::vector<double> fields;
+  Spring::visitFields(spring,
+                      [&](const char*, double value, const Range&) { fields.push_back(value); });
+  return fields;
+}
 
 template <class Spring>
 struct DampedElements : std::vector<Element> {};

@@ -36,6 +36,19 @@ std::array<Vector3, N> pointsAt(const std::array<std::uint32_t, N>& rows, const 
   return points;
 }
 
+/// Returns the forces of a spring on its ends; what of a force is along the position means nothing.
+template <class Spring>
+std::array<Vector3, Spring::kParticles> forcesOf(
+    const Spring& spring, const std::array<Vector3, Spring::kParticles>& points) {
+  const auto c = condition(spring, points);
+  std::array<Vector3, Spring::kParticles> forces;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vector3 torque = -spring.stiffness * c.value * c.gradient[i];
+    forces[i] = torque.cross(points[i]);
+  }
+  return forces;
+}
+
 /// Calls `visit(spring, rows of its ends)` for each spring of an element.
 template <int kEnds, int kSprings, class Visitor>
 void forEachSpring(const ElementGroup<kEnds, kSprings>& group, std::uint32_t lane,

@@ -2,6 +2,7 @@
 
 #include <tuple>
 
+#include "stepping/approach.h"
 #include "stepping/exact_springs.h"
 
 namespace spherical_springs::core {
@@ -11,35 +12,41 @@ namespace {
 template <class Spring>
 void addExactly(const Spring& spring, const std::array<std::uint32_t, Spring::kParticles>& rows,
                 const Row* positions, std::vector<Row>& forces) {
-  const auto points = pointsAt(rows, positions);
-  const auto c = condition(spring, points);
+  const auto of_spring = forcesOf(spring, pointsAt(rows, positions));
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Vector3 torque = -spring.stiffness * c.value * c.gradient[i];
-    Eigen::Map<Vector3>(forces[rows[i]].values) += torque.cross(points[i]);
+    Eigen::Map<Vector3>(forces[rows[i]].values) += of_spring[i];
   }
 }
 
 }  // namespace
 
-const Row* Forces::on(const Patch& patch, const Row* positions, Scratch& scratch) const {
-  forEachSort([&](auto sort) { addElements(sort, patch, positions, scratch); });
+const Row* Forces::on(const Patch& patch, const Row* positions, Scratch& scratch,
+                      NearElements* near) const {
+  forEachSort([&](auto sort) { addElements(sort, patch, positions, scratch, near); });
   return scratch.sums.data();
 }
 
 template <class Group>
 void Forces::addElements(Kind<Group> sort, const Patch& patch, const Row* positions,
-                         Scratch& scratch) const {
+                         Scratch& scratch, NearElements* near) const {
   const auto [begin, end] = patch.groups[sortOf<Group>()];
   if (begin == end) return;
   const Group* const groups = std::get<GroupList<Group>>(layout_.groups()).data() + begin;
-  const std::uint32_t hard_count = forceKernel(kernels_, sort)(
-      groups, end - begin, positions->values, scratch.sums[0].values, scratch.hard.data());
-  for (std::uint32_t h = 0; h < hard_count; ++h) {
-    const std::uint32_t element = scratch.hard[h];
+  MarkedElements marked = {scratch.hard.data(), scratch.near.data()};
+  forceKernel(kernels_, sort)(groups, end - begin, positions->values, scratch.sums[0].values,
+                              marked);
+  for (std::uint32_t h = 0; h < marked.hard_count; ++h) {
+    const std::uint32_t element = marked.hard[h];
+    bool is_near = false;
     forEachSpring(groups[element / kGroup], element % kGroup,
                   [&](const auto& spring, const auto& rows) {
+                    is_near |= near != nullptr && isNear(spring, pointsAt(rows, positions));
                     addExactly(spring, rows, positions, scratch.sums);
                   });
+    if (is_near) marked.near[marked.near_count++] = element;
+  }
+  if (near != nullptr) {
+    (*near)[sortOf<Group>()].assign(marked.near, marked.near + marked.near_count);
   }
 }
 

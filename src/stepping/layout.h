@@ -51,6 +51,36 @@ struct Patch {
   std::uint32_t slotCount() const { return roundedUpToGroup(particle_count); }
 };
 
+namespace detail {
+
+// The overloads below call `visit(kind, index in the system)` for the springs of an element.
+
+template <class Visitor>
+void forEachSpringOf(const SpringIndices<Arcs>& springs, std::uint32_t lane, const Visitor& visit) {
+  visit(Kind<AngleSpring>(), springs.of[0][lane]);
+}
+
+template <int kSprings, class Visitor>
+void forEachSpringOf(const SpringIndices<ElementGroup<3, kSprings>>& springs, std::uint32_t lane,
+                     const Visitor& visit) {
+  visit(Kind<SolidAngleSpring>(), springs.of[0][lane]);
+  for (int i = 1; i < kSprings; ++i) visit(Kind<AngleSpring>(), springs.of[i][lane]);
+}
+
+template <class Visitor>
+void forEachSpringOf(const SpringIndices<OrientedArcs>& springs, std::uint32_t lane,
+                     const Visitor& visit) {
+  visit(Kind<OrientedAngleSpring>(), springs.of[0][lane]);
+}
+
+template <class Spring, class Visitor>
+void forEachSpringOf(const SpringIndices<PlainSprings<Spring>>& springs, std::uint32_t lane,
+                     const Visitor& visit) {
+  visit(Kind<Spring>(), springs.of[0][lane]);
+}
+
+}  // namespace detail
+
 class Layout {
  public:
   /// `positions`: where the particles are, or were, so that neighbours come to lie together.
@@ -69,6 +99,11 @@ class Layout {
   /// For each ghost, the row of the owned copy.
   const std::vector<std::uint32_t>& ghosts() const { return ghosts_; }
   const PerSort<GroupList>& groups() const { return groups_; }
+
+  /// Calls `visit(kind, index in the system)` for the springs of an element of a patch.
+  template <class Group, class Visitor>
+  void forEachSpringOf(Kind<Group>, const Patch& patch, std::uint32_t element,
+                       const Visitor& visit) const;
 
   /// Copies the owned rows of a patch's ghosts to the rows that these have in the patch.
   void updateGhosts(const Patch& patch, std::vector<Row>& rows) const;
@@ -89,5 +124,14 @@ class Layout {
   PerSort<IndexList> springs_;
   bool any_parallel_ = false;  // springs, whose order depends on their numbers
 };
+
+template <class Group, class Visitor>
+void Layout::forEachSpringOf(Kind<Group>, const Patch& patch, std::uint32_t element,
+                             const Visitor& visit) const {
+  const std::uint32_t group = patch.groups[sortOf<Group>()].begin + element / kGroup;
+  const std::uint32_t lane = element % kGroup;
+  const auto& springs = std::get<IndexList<Group>>(springs_)[group];
+  if (springs.of[0][lane] != kNone) detail::forEachSpringOf(springs, lane, visit);
+}
 
 }  // namespace spherical_springs::core

@@ -85,10 +85,9 @@ ForceKernel<Group> forceKernel(const StepKernels& kernels, Kind<Group>) {
 template <class Spring>
 ForceKernel<PlainSprings<Spring>> forceKernel(const StepKernels&, Kind<PlainSprings<Spring>>) {
   return [](const PlainSprings<Spring>*, std::uint32_t group_count, const double*, double*,
-            std::uint32_t* hard) {
-    const std::uint32_t count = group_count * static_cast<std::uint32_t>(kGroup);
-    for (std::uint32_t s = 0; s < count; ++s) hard[s] = s;
-    return count;
+            MarkedElements& marked) {
+    marked.hard_count = group_count * static_cast<std::uint32_t>(kGroup);
+    for (std::uint32_t s = 0; s < marked.hard_count; ++s) marked.hard[s] = s;
   };
 }
 

@@ -21,6 +21,7 @@ ScratchPool::ScratchPool(const Layout& layout, std::uint32_t most_elements, int 
   for (Slot& slot : slots_) {
     slot.scratch.sums.resize(layout.largestPatch());
     slot.scratch.hard.resize(most_elements);
+    slot.scratch.near.resize(most_elements);
   }
 }
 

@@ -12,6 +12,7 @@ namespace spherical_springs::core {
 struct Scratch {
   std::vector<Row> sums;            ///< one row for each row of a patch
   std::vector<std::uint32_t> hard;  ///< indices of elements that kernels leave out
+  std::vector<std::uint32_t> near;  ///< room for `MarkedElements`
 };
 
 /// As many scratches as threads share a loop over patches, each large enough for every patch, so

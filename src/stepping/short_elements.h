@@ -1,6 +1,7 @@
 // Forces of arcs and triangles of less than half a radian or so.
 #pragma once
 
+#include "stepping/near_lanes.h"
 #include "stepping/step_batch.h"
 
 namespace {
@@ -16,6 +17,13 @@ constexpr double kSmall = 1.5 * kShort;  // so that no edge is longer than short
 [[gnu::always_inline]] inline Lanes shortPull(const LaneConstants& spring,
                                               const Lanes& squared_chord, const Lanes& over_sine) {
   return spring.stiffness * (overSineRatio(0.25 * squared_chord) - spring.rest * over_sine);
+}
+
+/// Returns whether a short arc may be near the place where its ends meet.
+[[gnu::always_inline]] inline LaneMask mayBeMeeting(const Lanes& squared_chord, const Lanes& rest) {
+  using spherical_springs::core::kNearPairShare;
+  static_assert(kShort < spherical_springs::core::kNearPair * spherical_springs::core::kNearPair);
+  return squared_chord < kNearMargin * kNearPairShare * kNearPairShare * rest * rest;
 }
 
 /// Copies member by member: as a whole the compiler would copy it in pieces of half a register,
@@ -52,7 +60,10 @@ class ShortTriangles {
     squared_bc_[count_] = e.squared_bc;
     squared_ca_[count_] = e.squared_ca;
     triple_product_[count_] = e.triple_product;
-    if (any(isOther(e, LaneConstants(batch, 0).rest))) return false;
+    LaneMask is_other = isOther(e, LaneConstants(batch, 0).rest);
+    if (kArcs > 0) is_other |= mayBeMeeting(e.squared_ab, LaneConstants(batch, 1).rest);
+    if (kArcs > 1) is_other |= mayBeMeeting(e.squared_bc, LaneConstants(batch, 2).rest);
+    if (any(is_other)) return false;
     if (++count_ == kMost) flush();
     return true;
   }
@@ -69,7 +80,7 @@ class ShortTriangles {
 
   [[gnu::always_inline]] static LaneMask isOther(const TriangleEdges& e, const Lanes& rest) {
     constexpr double kThinnest = 1. / 24;  // twice the area by the sum of the squared edges
-    constexpr double kLargestRest = 5;     // no area below 1 is half of 4 pi away from it
+    constexpr double kLargestRest = 5;     // no such area is near half of 4 pi away from it
     const Lanes sum = e.squared_ab + e.squared_bc + e.squared_ca;
     return (sum > kSmall) | (sum < kSmallest) | (absolute(e.triple_product) < kThinnest * sum) |
            (absolute(rest) > kLargestRest);
@@ -152,7 +163,9 @@ class ShortArcs {
     batches_[count_] = batch;
     put(chord, chord_[count_]);
     squared_[count_] = squared;
-    if (any((squared < 4 * kShortest) | (squared > kShort))) return false;
+    const LaneMask is_other = (squared < 4 * kShortest) | (squared > kShort) |
+                              mayBeMeeting(squared, LaneConstants(batch, 0).rest);
+    if (any(is_other)) return false;
     if (++count_ == kMost) flush();
     return true;
   }

@@ -30,14 +30,19 @@ struct OrientedArcs : ElementGroup<3, 1> {
   double width[kGroup];  ///< in use; 0 for a sharp step
 };
 
+/// Indices of elements that a force kernel tells of, in lists with room for all elements.
+struct MarkedElements {
+  std::uint32_t* hard;  ///< arcs near 0 or pi, triangles with nearly antipodal corners, sharp steps
+  std::uint32_t* near;  ///< others whose springs may be near a place where a condition has no
+                        ///< derivative
+  std::uint32_t hard_count = 0, near_count = 0;
+};
+
 /// Adds the forces of elements to rows of `forces`, for particles at rows of `positions`; what of a
-/// force is along the position means nothing. Nothing is added for the elements that are hard,
-/// whose indices are put into `hard`: arcs near 0 or pi, triangles with nearly antipodal corners,
-/// sharp steps.
-/// @return how many are hard.
+/// force is along the position means nothing. Nothing is added for the elements that are hard.
 template <class Group>
-using ForceKernel = std::uint32_t (*)(const Group* groups, std::uint32_t group_count,
-                                      const double* positions, double* forces, std::uint32_t* hard);
+using ForceKernel = void (*)(const Group* groups, std::uint32_t group_count,
+                             const double* positions, double* forces, MarkedElements& marked);
 
 /// Energies of the first springs of elements, and of the arcs along the edges of triangles [J].
 struct ElementEnergies {

@@ -16,25 +16,33 @@ template <class Group>
   }
 }
 
+using spherical_springs::core::MarkedElements;
+
+inline void mark(const Places& places, std::uint32_t first, MarkedElements& marked) {
+  for (int k = 0; k < kLanes; ++k) {
+    if (places.hard[k] != 0) {
+      marked.hard[marked.hard_count++] = first + k;
+    } else if (places.near[k] != 0) {
+      marked.near[marked.near_count++] = first + k;
+    }
+  }
+}
+
 template <class Short>
-std::uint32_t addAll(const typename Short::Group* groups, std::uint32_t group_count,
-                     const double* positions, double* forces, std::uint32_t* hard) {
+void addAll(const typename Short::Group* groups, std::uint32_t group_count, const double* positions,
+            double* forces, MarkedElements& marked) {
   constexpr std::uint32_t kAhead = 16;
   Short short_ones(positions, forces);
-  std::uint32_t hard_count = 0;
   for (std::uint32_t g = 0; g < group_count; ++g) {
     if (group_count - g > kAhead) fetch(groups + g + kAhead);
     for (std::uint32_t first = 0; first < kGroup; first += kLanes) {
       const Batch<typename Short::Group> batch = {groups + g, first};
       if (short_ones.add(batch)) continue;
-      const LaneMask mask = addAny(batch, positions, forces);
-      for (int k = 0; k < kLanes; ++k) {
-        if (mask[k] != 0) hard[hard_count++] = g * kGroup + first + k;
-      }
+      const Places places = addAny(batch, positions, forces);
+      if (any(places.hard | places.near)) mark(places, g * kGroup + first, marked);
     }
   }
   short_ones.flush();
-  return hard_count;
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Bench {
   std::vector<std::uint32_t> rows[3];
   std::vector<double> rest[3], stiffness[3];
   std::vector<double> width;
-  std::vector<std::uint32_t> hard;
+  std::vector<std::uint32_t> hard, near;
 
   explicit Bench(Sort sort)
       : sort(sort),
@@ -112,8 +112,12 @@ struct Bench {
   void runGroups(const std::vector<Group>& groups, const StepKernels& kernels) {
     forces.assign(positions.size(), Row{});
     hard.resize(kCount);
-    hard.resize(std::get<ForceKernel<Group>>(kernels.forces)(
-        groups.data(), kCount / kGroup, positions[0].values, forces[0].values, hard.data()));
+    near.resize(kCount);
+    MarkedElements marked = {hard.data(), near.data()};
+    std::get<ForceKernel<Group>>(kernels.forces)(groups.data(), kCount / kGroup,
+                                                 positions[0].values, forces[0].values, marked);
+    hard.resize(marked.hard_count);
+    near.resize(marked.near_count);
   }
 
   void run(const StepKernels& kernels) {

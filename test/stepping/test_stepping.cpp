@@ -110,7 +110,7 @@ TEST(Stepping, IsThatOfOneSpringAtATime) {
         testing::SplittingIntegrator plain(plan->system(), splittingScheme(method), 1e-3);
         const State expected = stepped(plain, scene, 3);
         for (const StepKernels* kernels : stepKernelsHere()) {
-          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, *kernels);
+          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, Passing::ignored, *kernels);
           const State result = stepped(blocked, scene, 3);
           EXPECT_LT(difference(result, expected), 1e-13);
           EXPECT_NEAR(result.dissipated, expected.dissipated, 1e-13 * expected.dissipated);
@@ -141,7 +141,7 @@ TEST_P(DampedStepping, IsThatOfOneSpringAtATime) {
         testing::SplittingIntegrator plain(plan->system(), splittingScheme(method), 1e-3);
         const State expected = core::stepped(plain, scene, 3);
         for (const StepKernels* kernels : stepKernelsHere()) {
-          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, *kernels);
+          BlockedSplitting blocked(plan, splittingScheme(method), 1e-3, Passing::ignored, *kernels);
           const State result = core::stepped(blocked, scene, 3);
           EXPECT_LT(difference(result, expected), 1e-13);
           EXPECT_NEAR(result.dissipated, expected.dissipated,
@@ -302,7 +302,7 @@ TEST(Stepping, OfLargeAnglesIsThatOfOneSpringAtATime) {
       testing::SplittingIntegrator plain(planOf(scene)->system(),
                                          splittingScheme(IntegrationMethod::euler), step);
       BlockedSplitting blocked(planOf(scene), splittingScheme(IntegrationMethod::euler), step,
-                               *kernels);
+                               Passing::ignored, *kernels);
       EXPECT_LT(difference(stepped(plain, scene, 1), stepped(blocked, scene, 1)), 1e-12);
     }
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spherical_springs/scene.h"
+#include "spherical_springs/state.h"
 
 namespace spherical_springs::core::testing {
 
@@ -95,6 +96,16 @@ inline Points positionsOf(const Scene& scene) {
     positions.col(i) = scene.particles().item(i).position;
   }
   return positions;
+}
+
+inline State stateOf(const Scene& scene) {
+  State state;
+  state.positions = positionsOf(scene);
+  state.angular_velocities = Points(3, scene.particles().size());
+  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
+    state.angular_velocities.col(i) = scene.particles().item(i).angular_velocity;
+  }
+  return state;
 }
 
 inline SpringLists springsOf(const Scene& scene) {

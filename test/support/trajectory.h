@@ -14,16 +14,6 @@
 
 namespace spherical_springs::core::testing {
 
-inline State stateOf(const Scene& scene) {
-  State state;
-  state.positions = positionsOf(scene);
-  state.angular_velocities = Points(3, scene.particles().size());
-  for (Eigen::Index i = 0; i < state.positions.cols(); ++i) {
-    state.angular_velocities.col(i) = scene.particles().item(i).angular_velocity;
-  }
-  return state;
-}
-
 struct Trajectory {
   std::shared_ptr<const Plan> plan;
   State state;
