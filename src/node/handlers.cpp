@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -163,6 +164,29 @@ void Handlers::setRunning(const std_srvs::SetBool::Request& request,
   runner_.setRunning(request.data);
 }
 
+namespace {
+
+/// Returns how many steps a request asks for.
+/// @throw std::invalid_argument where it does so in two ways, or for more than a step may take.
+std::uint32_t stepsIn(const Step::Request& request, core::Runner& runner) {
+  constexpr std::uint32_t kMost = ~std::uint32_t(0);
+  if (request.duration == 0) return request.steps;
+  if (request.steps != 0) {
+    throw std::invalid_argument("steps is " + std::to_string(request.steps) + " and duration is " +
+                                core::toText(request.duration) +
+                                "; allowed: one of the two, the other 0");
+  }
+  const double time_step =
+      runner.read([](const core::Simulation& s) { return s.settings().time_step; });
+  const double longest = kMost * time_step;
+  const std::string allowed = "0 to " + core::toText(longest) + " [s], the time of " +
+                              std::to_string(kMost) + " steps";
+  core::requireInside(core::Range{0, longest, allowed.c_str()}, request.duration, "duration");
+  return static_cast<std::uint32_t>(std::min<double>(std::round(request.duration / time_step), kMost));
+}
+
+}  // namespace
+
 void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
   const auto begin = Clock::now();
   auto& response = answer.response;
@@ -174,17 +198,19 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
     response.time = now.state.time;
     response.energies = energiesOf(now, frame_id_);
   };
-  if (request.steps == 0) {
+  const std::uint32_t steps = stepsIn(request, runner_);
+  if (steps == 0) {
     report();
     return;
   }
   const StatusChange told_at_the_end(news_);
-  const std::uint64_t done = runner_.step(request.steps, report);
-  response.message = done == request.steps ? "did " : "cancelled after ";
+  const std::uint64_t done = runner_.step(steps, report);
+  response.steps = static_cast<std::uint32_t>(done);
+  response.message = done == steps ? "did " : "cancelled after ";
   appendCount(done, "step", response.message);
-  if (done == request.steps) return;
+  if (done == steps) return;
   response.message += " of ";
-  append(request.steps, response.message);
+  append(steps, response.message);
 }
 
 void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer) {
