@@ -22,6 +22,9 @@ enum class IntegrationMethod {
 /// @throw std::invalid_argument for any other name.
 IntegrationMethod integrationMethod(const std::string& name);
 
+/// Returns the name of a method, as `integrationMethod` takes it.
+const char* nameOf(IntegrationMethod method);
+
 /// Order of accuracy of the method in the time step.
 int orderOf(IntegrationMethod method);
 

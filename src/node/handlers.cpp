@@ -166,9 +166,9 @@ void Handlers::setRunning(const std_srvs::SetBool::Request& request,
 
 namespace {
 
-/// Returns how many steps a request asks for.
+/// Returns how many steps of a length [s] a request asks for.
 /// @throw std::invalid_argument where it does so in two ways, or for more than a step may take.
-std::uint32_t stepsIn(const Step::Request& request, core::Runner& runner) {
+std::uint32_t stepsIn(const Step::Request& request, double time_step) {
   constexpr std::uint32_t kMost = ~std::uint32_t(0);
   if (request.duration == 0) return request.steps;
   if (request.steps != 0) {
@@ -176,13 +176,12 @@ std::uint32_t stepsIn(const Step::Request& request, core::Runner& runner) {
                                 core::toText(request.duration) +
                                 "; allowed: one of the two, the other 0");
   }
-  const double time_step =
-      runner.read([](const core::Simulation& s) { return s.settings().time_step; });
   const double longest = kMost * time_step;
-  const std::string allowed = "0 to " + core::toText(longest) + " [s], the time of " +
-                              std::to_string(kMost) + " steps";
+  const std::string allowed =
+      "0 to " + core::toText(longest) + " [s], the time of " + std::to_string(kMost) + " steps";
   core::requireInside(core::Range{0, longest, allowed.c_str()}, request.duration, "duration");
-  return static_cast<std::uint32_t>(std::min<double>(std::round(request.duration / time_step), kMost));
+  return static_cast<std::uint32_t>(
+      std::min<double>(std::round(request.duration / time_step), kMost));
 }
 
 }  // namespace
@@ -198,13 +197,16 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
     response.time = now.state.time;
     response.energies = energiesOf(now, frame_id_);
   };
-  const std::uint32_t steps = stepsIn(request, runner_);
-  if (steps == 0) {
+  std::uint32_t steps = 0;
+  const auto count = [&](const core::Simulation& s) {
+    return steps = stepsIn(request, s.settings().time_step);
+  };
+  if (runner_.read(count) == 0) {
     report();
     return;
   }
   const StatusChange told_at_the_end(news_);
-  const std::uint64_t done = runner_.step(steps, report);
+  const std::uint64_t done = runner_.step(count, report);
   response.steps = static_cast<std::uint32_t>(done);
   response.message = done == steps ? "did " : "cancelled after ";
   appendCount(done, "step", response.message);

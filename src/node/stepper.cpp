@@ -16,9 +16,9 @@ constexpr double kPeriod = 0.01;  // [s]
 
 Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters)
     : runner_(runner),
-      step_clock_(parameters.time_step, parameters.real_time_factor),
       last_step_(ros::Time::now()),
       last_wall_step_(WallClock::now()),
+      step_clock_(parameters.time_step, parameters.real_time_factor),
       timer_(node.createTimer(ros::Duration(kPeriod),
                               loggingFaults("a tick is left out", [this] { tick(); }))),
       thread_([this] { stepAtEachTick(); }) {}
@@ -30,6 +30,11 @@ Stepper::~Stepper() {
   }
   changed_.notify_one();
   thread_.join();
+}
+
+void Stepper::setPace(const Pace& pace) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  step_clock_.change(pace.time_step, pace.real_time_factor);
 }
 
 void Stepper::tick() {
@@ -59,11 +64,18 @@ void Stepper::step() {
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
   const double elapsed = last_step_.isZero() ? 0 : secondsBetween(last_step_, now);
-  const std::uint64_t due = step_clock_.due(elapsed);
+  const auto [due, time_step] = dueAfter(elapsed);
   const double wall_elapsed = std::chrono::duration<double>(wall_now - last_wall_step_).count();
   last_step_ = now;
   last_wall_step_ = wall_now;
-  runner_.advance(due, std::max(kPeriod, wall_elapsed));
+  // Where the runner has got another time step since, this tick's steps are dropped.
+  runner_.advance(due, time_step, std::max(kPeriod, wall_elapsed));
+}
+
+std::pair<std::uint64_t, double> Stepper::dueAfter(double elapsed) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::uint64_t due = step_clock_.due(elapsed);
+  return {due, step_clock_.timeStep()};
 }
 
 }  // namespace spherical_springs

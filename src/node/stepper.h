@@ -5,8 +5,10 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "node/parameters.h"
 #include "node/step_clock.h"
@@ -23,20 +25,26 @@ class Stepper {
   Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters);
   ~Stepper();
 
+  /// Goes on with another time step and factor, once the runner has the time step. For any thread.
+  void setPace(const Pace& pace);
+
  private:
   void tick();
   void stepAtEachTick();
   void step();
 
+  /// @return the steps due after `elapsed` [s], and their time step [s].
+  std::pair<std::uint64_t, double> dueAfter(double elapsed);
+
   core::Runner& runner_;  // safe for many threads by itself
 
   // Used by the thread alone.
-  StepClock step_clock_;
   ros::Time last_step_;
   std::chrono::steady_clock::time_point last_wall_step_;
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
+  StepClock step_clock_;
   bool ticked_ = false, ends_ = false;
 
   ros::Timer timer_;

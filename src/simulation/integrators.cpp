@@ -64,6 +64,8 @@ IntegrationMethod integrationMethod(const std::string& name) {
   throw std::invalid_argument("integrator is " + quoted(name) + "; allowed: " + names);
 }
 
+const char* nameOf(IntegrationMethod method) { return entryOf(method).name; }
+
 int orderOf(IntegrationMethod method) { return entryOf(method).order; }
 
 double stabilityLimit(IntegrationMethod method) { return entryOf(method).stability_limit; }

@@ -71,9 +71,21 @@ void Runner::setRunning(bool running) {
   running_ = running;
 }
 
-void Runner::stepBy(IntegrationMethod method, double time_step) {
+bool Runner::isRunning() const {
+  const ControlLock control(control_);
+  return running_;
+}
+
+void Runner::stepBy(IntegrationMethod method, double time_step, std::optional<bool> running) {
   const Lock lock(mutex_);
-  simulation_.stepBy(method, time_step);
+  const Simulation::Settings& now = simulation_.settings();
+  const bool steps_change = method != now.method || time_step != now.time_step;
+  const bool running_changes = running && *running != isRunning();
+  if (running_changes || (steps_change && activity() == Activity::stepping)) requireIdle();
+  if (steps_change) simulation_.stepBy(method, time_step);
+  if (!running_changes) return;
+  const ControlLock control(control_);
+  running_ = *running;
 }
 
 // One step shows how many more there is time for.
@@ -88,6 +100,7 @@ std::uint64_t Runner::stepForASlice(std::uint64_t most) {
     simulation_.step(steps);
     done += steps;
     const double taken = Seconds(Clock::now() - begin).count();
+    stepped_time_ += static_cast<double>(steps) * simulation_.settings().time_step;
     step_wall_time_ = std::max(taken / done, kShortest);
     left = Seconds(kSlice).count() - taken;
     steps = left > step_wall_time_ ? static_cast<std::uint64_t>(left / step_wall_time_) : 1;
@@ -95,9 +108,10 @@ std::uint64_t Runner::stepForASlice(std::uint64_t most) {
   return done;
 }
 
-std::uint64_t Runner::advance(std::uint64_t steps, double wall_time) {
+std::uint64_t Runner::advance(std::uint64_t steps, double time_step, double wall_time) {
   const auto end = Clock::now() + std::chrono::duration<double>(wall_time);
-  const auto mayStep = [this] {
+  const auto mayStep = [&] {
+    if (simulation_.settings().time_step != time_step) return false;
     const ControlLock control(control_);
     return running_ && activity_ == Activity::none;
   };
@@ -110,8 +124,9 @@ std::uint64_t Runner::advance(std::uint64_t steps, double wall_time) {
   return done;
 }
 
-std::uint64_t Runner::step(std::uint64_t steps, const std::function<void()>& report) {
+std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& report) {
   const Busy busy(*this, Activity::stepping);
+  const std::uint64_t steps = read(count);
   State before = read([](const Simulation& s) { return s.state(); });
   std::uint64_t done = 0;
   try {
@@ -297,6 +312,7 @@ Runner::Snapshot Runner::snapshot() {
     now.method = simulation_.settings().method;
     now.time_step = simulation_.settings().time_step;
     now.step_wall_time = step_wall_time_;
+    now.stepped_time = stepped_time_;
     revision = simulation_.revision();
     const ControlLock control(control_);
     now.running = running_;

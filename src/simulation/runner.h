@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -73,18 +74,31 @@ class Runner {
   /// @throw Refusal while a step or relaxation is under way.
   void setRunning(bool running);
 
-  /// Chooses the method and the time step [s] as `Simulation::stepBy` does, between two steps,
-  /// whatever is under way.
-  void stepBy(IntegrationMethod method, double time_step);
+  bool isRunning() const;
 
-  /// Up to `steps` steps in the time that `wall_time` [s] allows, if running and idle.
+  /// Chooses all at once, between two steps, the method and the time step [s] as
+  /// `Simulation::stepBy` does, and whether to run; no value of `running` leaves that as it is.
+  /// @throw Refusal where a step under way would go on with another method or time step, and as
+  /// `setRunning` does where `running` changes; std::invalid_argument as `Simulation::stepBy` does.
+  void stepBy(IntegrationMethod method, double time_step, std::optional<bool> running = {});
+
+  /// Up to `steps` steps of `time_step` [s] in the time that `wall_time` [s] allows, if running and
+  /// idle. None is done of another length, should another be chosen meanwhile.
   /// @return how many were done.
-  std::uint64_t advance(std::uint64_t steps, double wall_time);
+  std::uint64_t advance(std::uint64_t steps, double time_step, double wall_time);
 
-  /// Exactly `steps` steps, unless cancelled; then `report()`, while changes are still refused.
-  /// Where that throws, the steps are undone.
-  /// @return how many were done. @throw Refusal unless paused and idle, and what `report` throws.
-  std::uint64_t step(std::uint64_t steps, const std::function<void()>& report);
+  /// Counts the steps to do. The method and the time step do not change any more until they are
+  /// done.
+  using StepCount = std::function<std::uint64_t(const Simulation&)>;
+
+  /// Exactly as many steps as `count` says, unless cancelled; then `report()`, while changes are
+  /// still refused. Where that throws, the steps are undone.
+  /// @return how many were done. @throw Refusal unless paused and idle, and what `count` and
+  /// `report` throw.
+  std::uint64_t step(const StepCount& count, const std::function<void()>& report);
+  std::uint64_t step(std::uint64_t steps, const std::function<void()>& report) {
+    return step([steps](const Simulation&) { return steps; }, report);
+  }
   std::uint64_t step(std::uint64_t steps) {
     return step(steps, [] {});
   }
@@ -111,6 +125,7 @@ class Runner {
     Activity activity;
     double relax_progress;  ///< 0 to 1 while relaxing
     double step_wall_time;  ///< mean of a step lately [s]
+    double stepped_time;    ///< of all steps so far, of earlier scenes too [s]
   };
   Snapshot snapshot();
 
@@ -147,9 +162,10 @@ class Runner {
   void settle(const Points& positions);
   std::uint64_t stepForASlice(std::uint64_t most);
 
-  FairMutex mutex_;  // guards the next two
+  FairMutex mutex_;  // guards the next three
   Simulation simulation_;
   double step_wall_time_ = 0;
+  double stepped_time_ = 0;
 
   // Guards what follows, is locked after mutex_ where both are, and never held for long, so that a
   // cancel is answered while a large scene is changed. An activity begins under mutex_ too: what

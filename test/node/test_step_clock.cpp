@@ -20,6 +20,22 @@ TEST(StepClock, WaitsForAStepLongerThanATick) {
   EXPECT_EQ(clock.due(0.03), 1u);
 }
 
+TEST(StepClock, GoesOnWithOtherNumbers) {
+  StepClock clock(0.5, 1);
+  EXPECT_EQ(clock.due(0.25), 0u);
+  clock.change(1, 2);
+  EXPECT_EQ(clock.timeStep(), 1);
+  EXPECT_EQ(clock.due(0.25), 0u) << "0.25 s are left, and 0.5 s more are due";
+  EXPECT_EQ(clock.due(0.125), 1u);
+}
+
+TEST(StepClock, MakesNoBurstOfALongStepThatWasDueInPart) {
+  StepClock clock(1, 1);
+  EXPECT_EQ(clock.due(0.75), 0u);
+  clock.change(1e-12, 1e6);
+  EXPECT_EQ(clock.due(0), 0u);
+}
+
 TEST(StepClock, NeitherGoesBackNorPilesUp) {
   StepClock clock(0.5, 1);
   EXPECT_EQ(clock.due(-100), 0u);
