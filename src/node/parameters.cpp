@@ -1,9 +1,13 @@
 #include "node/parameters.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include "base/available_threads.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs {
 namespace {
@@ -20,10 +24,9 @@ std::string inWords(const XmlRpc::XmlRpcValue& value) {
                                              : core::shortened(text.str());
 }
 
-[[noreturn]] void refuse(const std::string& name, const XmlRpc::XmlRpcValue& value,
-                         const std::string& allowed) {
-  throw std::invalid_argument("parameter ~" + name + " is " + inWords(value) +
-                              "; allowed: " + allowed);
+std::string faultOf(const std::string& name, const XmlRpc::XmlRpcValue& value,
+                    const std::string& allowed) {
+  return "parameter ~" + name + " is " + inWords(value) + "; allowed: " + allowed;
 }
 
 // A whole number will do for a real one, but nothing else is taken for something else.
@@ -36,57 +39,95 @@ bool isOf(const XmlRpc::XmlRpcValue& raw, const std::string&) {
   return raw.getType() == Type::TypeString;
 }
 
-/// Reads one parameter, if it is set; `allowed` says which values `accept` takes.
-template <class Value, class Accept>
-void read(const ros::NodeHandle& node, const std::string& name, Value& value,
-          const std::string& allowed, const Accept& accept) {
+/// Reads one parameter, if it is set.
+template <class Value>
+void read(const ros::NodeHandle& node, const std::string& name, const Allowed<Value>& allowed,
+          Value& value) {
   XmlRpc::XmlRpcValue raw;
   if (!node.getParam(name, raw)) return;
-  if (!isOf(raw, value) || !node.getParam(name, value) || !accept(value)) {
-    refuse(name, raw, allowed);
+  if (!isOf(raw, value) || !node.getParam(name, value) || !allowed.contains(value)) {
+    throw std::invalid_argument(faultOf(name, raw, allowed.words));
   }
 }
 
-void read(const ros::NodeHandle& node, const std::string& name, double& value,
-          const core::Range& range) {
-  read(node, name, value, range.allowed, [&](double v) { return range.contains(v); });
+Allowed<double> inside(const core::Range& range) {
+  return {range.allowed, [range](double v) { return range.contains(v); }};
 }
 
-void read(const ros::NodeHandle& node, const std::string& name, int& value, int low, int high) {
-  read(node, name, value,
-       "whole numbers from " + std::to_string(low) + " to " + std::to_string(high),
-       [&](int v) { return low <= v && v <= high; });
+Allowed<int> wholeNumbers(int low, int high) {
+  return {"whole numbers from " + std::to_string(low) + " to " + std::to_string(high),
+          [=](int v) { return low <= v && v <= high; }};
 }
 
-void read(const ros::NodeHandle& node, const std::string& name, std::string& value,
-          const std::vector<std::string>& choices) {
-  std::string allowed;
-  for (const std::string& choice : choices) allowed += (allowed.empty() ? "" : ", ") + choice;
-  read(node, name, value, allowed, [&](const std::string& v) {
-    return std::find(choices.begin(), choices.end(), v) != choices.end();
-  });
+Allowed<std::string> oneOf(const std::vector<std::string>& choices) {
+  std::string words;
+  for (const std::string& choice : choices) words += (words.empty() ? "" : ", ") + choice;
+  return {words, [choices](const std::string& v) {
+            return std::find(choices.begin(), choices.end(), v) != choices.end();
+          }};
 }
+
+Allowed<std::string> anyText(const char* words) {
+  return {words, [](const std::string&) { return true; }};
+}
+
+Allowed<std::string> someText(const char* words) {
+  return {words, [](const std::string& text) { return !text.empty(); }};
+}
+
+/// What is allowed at start and while the node runs.
+struct AllowedPace {
+  Allowed<double> time_step = inside({1e-12, Pace::kLongestTimeStep, "1e-12 to 1e6 [s]"});
+  Allowed<std::string> integrator = oneOf({"euler", "verlet", "fourth_order", "implicit_euler"});
+  Allowed<double> real_time_factor = inside({1e-6, 1e6, "1e-6 to 1e6"});
+  Allowed<double> publish_rate = inside({1e-3, 1e4, "0.001 to 10000 [Hz]"});
+  Allowed<bool> running = {"true, false", [](bool) { return true; }};
+};
+
+bool isNonFinite(double value) { return !std::isfinite(value); }
+bool isNonFinite(const std::string&) { return false; }
 
 }  // namespace
 
+void Pace::requireValid() const {
+  const AllowedPace allowed;
+  forEachField(
+      [](const char* name, const auto& rule, const auto& value) {
+        if (rule.contains(value)) return;
+        const std::string fault = faultOf(name, XmlRpc::XmlRpcValue(value), rule.words);
+        if (isNonFinite(value)) throw core::NonFinite(fault);
+        throw std::invalid_argument(fault);
+      },
+      allowed, *this);
+}
+
+std::string Pace::differenceFrom(const Pace& other) const {
+  std::string words;
+  forEachField(
+      [&](const char* name, const auto& value, const auto& other_value) {
+        if (value == other_value) return;
+        words += words.empty() ? "" : ", ";
+        words += std::string("~") + name + " is " + inWords(XmlRpc::XmlRpcValue(value));
+      },
+      *this, other);
+  return words;
+}
+
 Parameters Parameters::from(const ros::NodeHandle& node) {
-  const auto anyText = [](const std::string&) { return true; };
-  const auto someText = [](const std::string& text) { return !text.empty(); };
+  const auto readField = [&](const char* name, const auto& allowed, auto& value) {
+    read(node, name, allowed, value);
+  };
   Parameters p;
-  read(node, "time_step", p.time_step, core::Range{1e-12, kLongestTimeStep, "1e-12 to 1e6 [s]"});
-  read(node, "integrator", p.integrator, {"euler", "verlet", "fourth_order", "implicit_euler"});
-  read(node, "publish_rate", p.publish_rate, core::Range{1e-3, 1e4, "0.001 to 10000 [Hz]"});
-  read(node, "real_time_factor", p.real_time_factor, core::Range{1e-6, 1e6, "1e-6 to 1e6"});
-  read(node, "running", p.running, "true, false", [](bool) { return true; });
-  read(node, "frame_id", p.frame_id, "a name that is not empty", someText);
-  read(node, "radius", p.radius, core::Range{1e-6, 1e6, "1e-6 to 1e6 [m]"});
-  read(node, "scene", p.scene, "the path of a file", anyText);
-  read(node, "threads", p.threads, 0, 256);
-  read(node, "spring_damping", p.spring_damping, {"relative", "own"});
-  read(node, "max_particles", p.max_particles, 0,
-       static_cast<int>(core::SceneLimits::kMostParticles));
-  read(node, "max_springs", p.max_springs, 0, static_cast<int>(core::SceneLimits::kMostSprings));
-  read(node, "scene_directory", p.scene_directory, "the path of a directory", someText);
+  const AllowedPace allowed;
+  forEachField(readField, allowed, p);
+  readField("frame_id", someText("a name that is not empty"), p.frame_id);
+  readField("radius", inside({1e-6, 1e6, "1e-6 to 1e6 [m]"}), p.radius);
+  readField("scene", anyText("the path of a file"), p.scene);
+  readField("threads", wholeNumbers(0, 256), p.threads);
+  readField("spring_damping", oneOf({"relative", "own"}), p.spring_damping);
+  readField("max_particles", wholeNumbers(0, core::SceneLimits::kMostParticles), p.max_particles);
+  readField("max_springs", wholeNumbers(0, core::SceneLimits::kMostSprings), p.max_springs);
+  readField("scene_directory", someText("the path of a directory"), p.scene_directory);
   return p;
 }
 

@@ -2,11 +2,19 @@
 
 #include <ros/node_handle.h>
 
+#include <functional>
 #include <string>
 
 #include "spherical_springs/simulation.h"
 
 namespace spherical_springs {
+
+/// Values that a parameter may have.
+template <class Value>
+struct Allowed {
+  std::string words;  ///< for messages
+  std::function<bool(const Value&)> contains;
+};
 
 /// The parameters that may change while the node runs, with their defaults.
 struct Pace {
@@ -18,12 +26,22 @@ struct Pace {
   double publish_rate = 30;           ///< of poses, energies and markers [Hz]
   bool running = true;                ///< whether time goes on
 
-  /// Calls `visit(name, field, accepted, allowed in words)` for each field of `pace`.
-  template <class PaceOrConst, class Visitor>
-  static void forEachField(PaceOrConst& pace, const Visitor& visit);
+  /// Calls `visit(name, fields...)` for each parameter, with the field of that name of each holder.
+  template <class Visitor, class... Holders>
+  static void forEachField(const Visitor& visit, Holders&... holders) {
+    visit("time_step", holders.time_step...);
+    visit("integrator", holders.integrator...);
+    visit("real_time_factor", holders.real_time_factor...);
+    visit("publish_rate", holders.publish_rate...);
+    visit("running", holders.running...);
+  }
 
-  /// @throw std::invalid_argument naming the parameter, its value and what is allowed.
+  /// @throw std::invalid_argument naming the parameter, its value and what is allowed; a
+  /// core::NonFinite where the value is a number that is not finite.
   void requireValid() const;
+
+  /// Names each parameter that differs from `other`, and its value here; empty where none does.
+  std::string differenceFrom(const Pace& other) const;
 };
 
 /// The node's parameters, with their defaults.
@@ -38,7 +56,7 @@ struct Parameters : Pace {
   std::string scene_directory = "~/.ros/spherical_springs";  ///< of files named in services
 
   /// Reads what is set under `node`.
-  /// @throw std::invalid_argument naming the parameter, its value and what is allowed.
+  /// @throw std::invalid_argument as `requireValid` does, for every parameter.
   static Parameters from(const ros::NodeHandle& node);
 
   core::Simulation::Settings simulation() const;
