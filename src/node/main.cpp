@@ -12,6 +12,7 @@
 #include "node/news.h"
 #include "node/parameters.h"
 #include "node/publisher.h"
+#include "node/reconfiguration.h"
 #include "node/request_memory.h"
 #include "node/scene_directory.h"
 #include "node/services.h"
@@ -42,12 +43,13 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
 //   ticking     the clock's ticks, which it hands to the thread of Stepper, which steps
 //   sampling    ~poses and ~energies
 //   reporting   ~status and /diagnostics
+//   reconfiguring   dynamic_reconfigure, which waits for the master
 //   drawing     ~markers
 // A relaxation has a thread of its own, for which the caller waits (Runner); loops over many
 // springs are shared among threads of the core.
 struct Threads {
   CallbackThreads calls{8}, cancelling{1}, pausing{1}, ticking{1}, sampling{1}, reporting{1},
-      drawing{1};
+      drawing{1}, reconfiguring{1};
 
   void start() {
     for (CallbackThreads* threads : all()) threads->start();
@@ -57,8 +59,9 @@ struct Threads {
   }
 
  private:
-  std::array<CallbackThreads*, 7> all() {
-    return {&calls, &cancelling, &pausing, &ticking, &sampling, &reporting, &drawing};
+  std::array<CallbackThreads*, 8> all() {
+    return {&calls,    &cancelling, &pausing, &ticking,
+            &sampling, &reporting,  &drawing, &reconfiguring};
   }
 };
 
@@ -74,12 +77,14 @@ void run() {
   Threads threads;
   News news;
   Handlers handlers(runner, news, directory, limits, parameters.frame_id);
-  const Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner,
-                            news, parameters);
-  const MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
+  Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner, news,
+                      parameters);
+  MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
   const Services services(threads.calls.handle(node), threads.cancelling.handle(node),
                           threads.pausing.handle(node), handlers, news, limits);
-  const Stepper stepper(threads.ticking.handle(node), runner, parameters);
+  Stepper stepper(threads.ticking.handle(node), runner, parameters);
+  const Reconfiguration reconfiguration(threads.reconfiguring.handle(node), runner, news, stepper,
+                                        publisher, markers, parameters);
   threads.start();
   ros::waitForShutdown();
   runner.close();

@@ -33,6 +33,8 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle node, core::Runner& runner,
                             loggingFaults("~markers are sent later", [this] { publishChanges(); }));
 }
 
+void MarkerPublisher::setRate(double rate) { timer_.setPeriod(ros::Duration(1 / rate)); }
+
 MarkerPublisher::Markers MarkerPublisher::markersOf(const core::Runner::Snapshot& moment) const {
   const core::System& system = *moment.plan->system();
   const core::Points& positions = moment.state.positions;

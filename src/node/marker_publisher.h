@@ -24,6 +24,9 @@ class MarkerPublisher {
   /// `runner` must live longer.
   MarkerPublisher(ros::NodeHandle node, core::Runner& runner, const Parameters& parameters);
 
+  /// Begins a new period; for one thread at a time. `rate`: [Hz].
+  void setRate(double rate);
+
  private:
   /// All that may change, in an order of their own.
   using Markers = std::array<visualization_msgs::Marker, 3>;

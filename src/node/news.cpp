@@ -24,6 +24,7 @@ void News::tell(std::string_view what, std::string_view subject) noexcept {
     const std::lock_guard<std::mutex> lock(mutex_);
     replace(subject, message_);
     append(what, message_);
+    told_at_ = Clock::now();
   }
   statusChanged();
 }
@@ -43,8 +44,10 @@ void News::relaxed(std::string_view fault) noexcept {
 News::Facts News::facts() const {
   constexpr std::chrono::seconds kRemembered(10);
   const std::lock_guard<std::mutex> lock(mutex_);
-  const bool refused_lately = refusals_ > 0 && Clock::now() - refused_at_ < kRemembered;
-  return {message_, refused_lately ? refusal_ : "", refusals_, relaxation_fault_};
+  const auto now = Clock::now();
+  const bool told_lately = !message_.empty() && now - told_at_ < kRemembered;
+  const bool refused_lately = refusals_ > 0 && now - refused_at_ < kRemembered;
+  return {message_, told_lately, refused_lately ? refusal_ : "", refusals_, relaxation_fault_};
 }
 
 }  // namespace spherical_springs

@@ -35,6 +35,7 @@ class News {
 
   struct Facts {
     std::string message;           ///< the last one told
+    bool message_is_new = false;   ///< told in the last ten seconds
     std::string refusal;           ///< the reason of one in the last ten seconds, or empty
     unsigned refusals = 0;         ///< so far
     std::string relaxation_fault;  ///< as `relaxed` was told
@@ -48,7 +49,7 @@ class News {
 
   mutable std::mutex mutex_;  // guards what follows
   std::string message_, refusal_, relaxation_fault_;
-  Clock::time_point refused_at_;
+  Clock::time_point told_at_, refused_at_;
   unsigned refusals_ = 0;
 };
 

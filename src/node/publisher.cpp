@@ -16,6 +16,12 @@ const char* nameOf(const core::Runner::Snapshot& snapshot) {
   return snapshot.running || snapshot.activity == core::Activity::stepping ? "running" : "paused";
 }
 
+/// A warning stands for as long as its cause, but hides nothing new.
+std::string messageOf(const Report& report) {
+  if (report.warning.empty()) return report.news.message;
+  return report.news.message_is_new ? report.news.message + "; " + report.warning : report.warning;
+}
+
 }  // namespace
 
 // Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
@@ -25,8 +31,8 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
     : parameters_(parameters),
       runner_(runner),
       news_(news),
+      expected_factor_(parameters.real_time_factor),
       diagnostics_(reporting),
-      stepped_(parameters.time_step),
       real_time_monitor_(parameters.real_time_factor, parameters.time_step) {
   constexpr double kStatusCheck = 0.05;  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { news_.statusChanged(); };
@@ -41,6 +47,8 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
       ros::WallDuration(kStatusCheck),
       loggingFaults("~status comes later", [this] { publishStatusIfDue(); }));
 }
+
+void Publisher::setRate(double rate) { sample_timer_.setPeriod(ros::Duration(1 / rate)); }
 
 void Publisher::publishSample() {
   const bool to_poses = poses_.getNumSubscribers() > 0;
@@ -79,11 +87,12 @@ void Publisher::publishStatusIfDue() {
 }
 
 /// The time of the steps since the last call, as a share of the wall's.
-double Publisher::realTimeFactor(const core::State& state) {
+double Publisher::realTimeFactor(double stepped_time) {
   const auto now = Clock::now();
   const double elapsed = std::chrono::duration<double>(now - last_status_).count();
   last_status_ = now;
-  const double simulated = stepped_.add(state.steps);
+  const double simulated = stepped_time - last_stepped_time_;
+  last_stepped_time_ = stepped_time;
   return elapsed > 0 ? simulated / elapsed : 0;
 }
 
@@ -101,17 +110,17 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
     kind.count(message) = system.springs<typename decltype(kind)::Spring>().size();
   });
   message.state = nameOf(snapshot);
-  message.integrator = parameters_.integrator;
-  message.time_step = parameters_.time_step;
-  const double factor = realTimeFactor(state);
+  message.integrator = core::nameOf(snapshot.method);
+  message.time_step = snapshot.time_step;
+  const double factor = realTimeFactor(snapshot.stepped_time);
   message.real_time_factor = message.state == "running" ? factor : 0;
   message.step_wall_time = snapshot.step_wall_time;
   message.relax_progress = snapshot.relax_progress;
 
   // Trial steps would take the processors from a relaxation, and mean nothing meanwhile.
   if (snapshot.activity != core::Activity::relaxing) {
-    measures_ = core::measure(snapshot.plan, core::integrationMethod(parameters_.integrator),
-                              parameters_.time_step, state, *snapshot.account);
+    measures_ =
+        core::measure(snapshot.plan, snapshot.method, snapshot.time_step, state, *snapshot.account);
   }
   core::Measures measures = measures_;
   measures.max_torque = core::maxTorque(*snapshot.plan, state);
@@ -126,10 +135,11 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.max_torque = measures.max_torque;
   report.warning = measures.warning;
   report.blown_up = measures.blown_up;
+  real_time_monitor_.expect(expected_factor_, snapshot.time_step);
   report.behind = real_time_monitor_.behind(message.state == "running", ros::Time::now().toSec(),
-                                            stepped_.total());
+                                            snapshot.stepped_time);
   report.news = news_.facts();
-  message.message = measures.warning.empty() ? report.news.message : measures.warning;
+  message.message = messageOf(report);
   return report;
 }
 

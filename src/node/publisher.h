@@ -7,6 +7,7 @@
 #include <ros/wall_timer.h>
 #include <spherical_springs/Energies.h>
 
+#include <atomic>
 #include <chrono>
 #include <string>
 
@@ -15,7 +16,6 @@
 #include "node/parameters.h"
 #include "node/real_time_monitor.h"
 #include "node/rest.h"
-#include "node/stepped_time.h"
 #include "simulation/runner.h"
 
 namespace spherical_springs {
@@ -30,13 +30,19 @@ class Publisher {
   Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner, News& news,
             const Parameters& parameters);
 
+  /// Begins a new period of poses and energies; for one thread at a time. `rate`: [Hz].
+  void setRate(double rate);
+
+  /// Judges from now on whether simulated time follows the clock by this factor. For any thread.
+  void expectRealTimeFactor(double factor) { expected_factor_ = factor; }
+
  private:
   using Clock = std::chrono::steady_clock;
 
   void publishSample();
   void publishStatusIfDue();
   Report report(const core::Runner::Snapshot& snapshot);
-  double realTimeFactor(const core::State& state);
+  double realTimeFactor(double stepped_time);
 
   // Read-only.
   const Parameters parameters_;
@@ -44,12 +50,13 @@ class Publisher {
   // Safe for many threads by themselves.
   core::Runner& runner_;
   News& news_;
+  std::atomic<double> expected_factor_;
 
   // Used by the status timer alone.
   Diagnostics diagnostics_;
   Clock::time_point last_status_ = Clock::now();
   Rest rest_;
-  SteppedTime stepped_;
+  double last_stepped_time_ = 0;
   RealTimeMonitor real_time_monitor_;
   core::Measures measures_;
 

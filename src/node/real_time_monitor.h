@@ -8,6 +8,13 @@ class RealTimeMonitor {
   RealTimeMonitor(double real_time_factor, double time_step)
       : real_time_factor_(real_time_factor), time_step_(time_step) {}
 
+  /// Takes what holds from now on. Where it is something else, judging begins anew.
+  void expect(double real_time_factor, double time_step) {
+    running_ = running_ && real_time_factor == real_time_factor_ && time_step == time_step_;
+    real_time_factor_ = real_time_factor;
+    time_step_ = time_step;
+  }
+
   /// Takes the clock [s] and the simulated time [s]; to be called now and then, and when running
   /// begins or ends.
   /// @return whether simulated time falls behind.

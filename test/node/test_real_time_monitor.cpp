@@ -30,6 +30,18 @@ TEST(RealTimeMonitor, IsNotThereWhenTimeOrTheClockGoesBack) {
   EXPECT_FALSE(monitor.behind(true, 3, 1));
 }
 
+TEST(RealTimeMonitor, JudgesAnewWhereSomethingElseIsExpected) {
+  RealTimeMonitor monitor(1, 0.001);
+  monitor.behind(true, 10, 0);
+  EXPECT_TRUE(monitor.behind(true, 12, 1));
+  monitor.expect(1, 0.001);
+  EXPECT_TRUE(monitor.behind(true, 12.1, 1)) << "it is as before";
+  monitor.expect(3, 0.001);
+  EXPECT_FALSE(monitor.behind(true, 13, 2));
+  EXPECT_FALSE(monitor.behind(true, 14, 5));
+  EXPECT_TRUE(monitor.behind(true, 15, 6));
+}
+
 TEST(RealTimeMonitor, TakesNoStepThatIsYetToComeForOne) {
   RealTimeMonitor monitor(1, 2);
   monitor.behind(true, 10, 0);
