@@ -1,6 +1,9 @@
 #include "node/reconfiguration.h"
 
+#include <dynamic_reconfigure/ConfigDescription.h>
+
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "node/faults.h"
@@ -14,6 +17,27 @@ void copyFields(const From& from, To& to) {
   Pace::forEachField([](const char*, const auto& value, auto& copy) { copy = value; }, from, to);
 }
 
+SteppingConfig configOf(const Pace& pace) {
+  SteppingConfig config = SteppingConfig::__getDefault__();
+  copyFields(pace, config);
+  return config;
+}
+
+/// @throw std::invalid_argument where an update names something else than the fields of `pace`.
+Pace updated(const Pace& pace, dynamic_reconfigure::Config& update) {
+  SteppingConfig config = configOf(pace);
+  if (!config.__fromMessage__(update)) {
+    std::string names;
+    Pace::forEachField([&](const char* name) { names += std::string(" ") + name; });
+    throw std::invalid_argument(
+        "the update names a parameter twice, or one that is unknown or of another type; allowed:" +
+        names);
+  }
+  Pace wanted = pace;
+  copyFields(config, wanted);
+  return wanted;
+}
+
 }  // namespace
 
 Reconfiguration::Reconfiguration(const ros::NodeHandle& node, core::Runner& runner, News& news,
@@ -24,36 +48,40 @@ Reconfiguration::Reconfiguration(const ros::NodeHandle& node, core::Runner& runn
       stepper_(stepper),
       publisher_(publisher),
       markers_(markers),
-      pace_(pace),
-      server_(mutex_, node) {
-  constexpr double kRunningCheck = 0.1;  // [s]
-  server_.setCallback([this](SteppingConfig& config, std::uint32_t) { reconfigure(config); });
-  timer_ = node.createWallTimer(
-      ros::WallDuration(kRunningCheck),
-      loggingFaults("dynamic_reconfigure shows ~running later", [this] { showRunning(); }));
+      node_(node),
+      pace_(pace) {
+  constexpr double kCheck = 0.1;  // [s]
+  constexpr bool kLatched = true;
+  descriptions_ = node_.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions",
+                                                                          1, kLatched);
+  updates_ = node_.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, kLatched);
+  descriptions_.publish(SteppingConfig::__getDescriptionMessage__());
+  show();
+  service_ = node_.advertiseService("set_parameters", &Reconfiguration::reconfigure, this);
+  timer_ = node_.createWallTimer(
+      ros::WallDuration(kCheck),
+      loggingFaults("dynamic_reconfigure shows changes later", [this] { showChanges(); }));
 }
 
-// The server takes for the new configuration what this leaves in `config`, even where it throws.
-void Reconfiguration::reconfigure(SteppingConfig& config) noexcept {
+bool Reconfiguration::reconfigure(Service::Request& request, Service::Response& response) {
   try {
-    change(config);
+    change(request.config);
   } catch (const std::exception& fault) {
     refuse(fault);
   }
-  pace_.running = runner_.isRunning();
-  copyFields(pace_, config);
+  show();
+  configOf(pace_).__toMessage__(response.config);
+  return true;
 }
 
-// An update names some parameters; the server fills in the others from what it has shown. What is
-// as shown is therefore left as it is, be it that ~set_running has changed it since.
-void Reconfiguration::change(const SteppingConfig& asked) {
-  Pace wanted = pace_;
-  copyFields(asked, wanted);
-  const std::string difference = wanted.differenceFrom(pace_);
+void Reconfiguration::change(dynamic_reconfigure::Config& update) {
+  const Pace now = present();
+  const Pace wanted = updated(now, update);
+  const std::string difference = wanted.differenceFrom(now);
   if (difference.empty()) return;
   wanted.requireValid();
-  const auto running =
-      wanted.running == pace_.running ? std::nullopt : std::optional(wanted.running);
+  std::optional<bool> running;
+  if (wanted.running != now.running) running = wanted.running;
   runner_.stepBy(core::integrationMethod(wanted.integrator), wanted.time_step, running);
   apply(wanted);
   news_.tell(difference, "reconfigured: ");
@@ -68,6 +96,7 @@ void Reconfiguration::apply(const Pace& pace) {
     markers_.setRate(pace.publish_rate);
   }
   pace_ = pace;
+  shown_ = false;
 }
 
 void Reconfiguration::refuse(const std::exception& fault) noexcept {
@@ -77,15 +106,26 @@ void Reconfiguration::refuse(const std::exception& fault) noexcept {
   logFault("not reconfigured", reason);
 }
 
-void Reconfiguration::showRunning() {
-  const bool running = runner_.isRunning();
-  if (running == pace_.running) return;
-  Pace pace = pace_;
-  pace.running = running;
-  SteppingConfig config = SteppingConfig::__getDefault__();
-  copyFields(pace, config);
-  server_.updateConfig(config);
-  pace_ = pace;
+/// What holds now.
+Pace Reconfiguration::present() const {
+  Pace now = pace_;
+  now.running = runner_.isRunning();
+  return now;
+}
+
+void Reconfiguration::showChanges() {
+  if (!shown_ || runner_.isRunning() != pace_.running) show();
+}
+
+void Reconfiguration::show() {
+  const Pace now = present();
+  const SteppingConfig config = configOf(now);
+  config.__toServer__(node_);
+  dynamic_reconfigure::Config message;
+  config.__toMessage__(message);
+  updates_.publish(message);
+  pace_ = now;
+  shown_ = true;
 }
 
 }  // namespace spherical_springs

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <dynamic_reconfigure/server.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/service_server.h>
 #include <ros/wall_timer.h>
 #include <spherical_springs/SteppingConfig.h>
 
-#include <boost/thread/recursive_mutex.hpp>
+#include <exception>
 
 #include "node/marker_publisher.h"
 #include "node/news.h"
@@ -18,6 +20,8 @@ namespace spherical_springs {
 
 /// Lets the parameters of Pace change while the node runs, by dynamic_reconfigure: each update as a
 /// whole or not at all. The configuration that clients and the parameter server see is what holds.
+/// (The server of dynamic_reconfigure itself fills in what an update does not name from what it has
+/// shown last, and would so undo a ~set_running that it has not heard of.)
 class Reconfiguration {
  public:
   /// `node`: a handle whose callbacks are called on one thread, as each of them waits for the
@@ -26,25 +30,30 @@ class Reconfiguration {
                   Publisher& publisher, MarkerPublisher& markers, const Pace& pace);
 
  private:
-  void reconfigure(SteppingConfig& config) noexcept;
-  void change(const SteppingConfig& asked);
+  using Service = dynamic_reconfigure::Reconfigure;
+
+  bool reconfigure(Service::Request& request, Service::Response& response);
+  void change(dynamic_reconfigure::Config& update);
   void apply(const Pace& pace);
   void refuse(const std::exception& fault) noexcept;
-  void showRunning();
+  Pace present() const;
+  void showChanges();
+  void show();
 
   core::Runner& runner_;
   News& news_;
   Stepper& stepper_;
   Publisher& publisher_;
   MarkerPublisher& markers_;
+  ros::NodeHandle node_;
 
   // Used by the one thread alone.
-  Pace pace_;  // as clients see it; ~set_running may have changed `running` since
+  Pace pace_;  // `running` as it was shown; ~set_running may have changed it since
+  bool shown_ = false;
 
   // Last, so that their callbacks end before what these use.
-  boost::recursive_mutex
-      mutex_;  // of the server, which wants one for updates that it does not make
-  dynamic_reconfigure::Server<SteppingConfig> server_;
+  ros::Publisher descriptions_, updates_;
+  ros::ServiceServer service_;
   ros::WallTimer timer_;
 };
 

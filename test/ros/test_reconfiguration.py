@@ -4,6 +4,8 @@ import math
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from dynamic_reconfigure.msg import Config, DoubleParameter, IntParameter
+from dynamic_reconfigure.srv import Reconfigure
 from rosgraph_msgs.msg import Clock
 from spherical_springs.msg import Energies, Status
 from visualization_msgs.msg import MarkerArray
@@ -125,6 +127,13 @@ class TestChanges(ReconfigurationTest):
             self.node.set_running(running)
             self.assert_holds(running=running)
 
+    def test_the_last_call_wins_whatever_clients_have_seen(self):
+        self.start()
+        for _ in range(20):
+            self.node.set_running(False)
+            self.assertFalse(self.reconfigure(publish_rate=20)['running'])
+            self.assertTrue(self.reconfigure(running=True)['running'])
+
     def test_a_change_is_told(self):
         self.start(running='false')
         self.reconfigure(time_step=0.5, running=False)
@@ -164,6 +173,18 @@ class TestRefusals(ReconfigurationTest):
         self.reconfigure(publish_rate=-1)
         self.status(lambda s: 'publish_rate is -1; allowed: ' in s.message and
                     '; the time step' in s.message)
+
+    def test_what_is_no_parameter(self):
+        self.start()
+        call = rospy.ServiceProxy(self.process.name + '/set_parameters', Reconfigure)
+        rate = DoubleParameter('publish_rate', 5)
+        for update in (
+                Config(doubles=[rate, DoubleParameter('radius', 2)]),
+                Config(doubles=[rate, rate]),
+                Config(doubles=[rate], ints=[IntParameter('time_step', 1)])):
+            self.assertIn(DoubleParameter('publish_rate', 30), call(update).config.doubles)
+            self.status(lambda s: 'unknown or of another type; allowed: time_step' in s.message)
+        self.assert_holds()
 
     def test_a_number_that_is_not_finite_is_an_error_in_diagnostics(self):
         self.start(running='false')
