@@ -29,8 +29,8 @@ class Account {
   /// Begins at a state.
   Account(const Plan& plan, const State& state);
 
-  /// |total + dissipated - its value at the beginning| / the total at the beginning, which counts as
-  /// at least what rounding makes of the stiffest spring.
+  /// |total + dissipated - its value at the beginning| / the total at the beginning, which counts
+  /// as at least what rounding makes of the stiffest spring.
   double energyError(const Energies& now) const;
 
   /// The share of the steps since the beginning that were divided.
@@ -59,9 +59,9 @@ struct Measures {
   double norm_error = 0;              ///< max | |p| - 1 |
   double max_torque = 0;              ///< on a particle that is not pinned [N m]
   double divided_steps = 0;           ///< as Account has it
-  double shortest_substep = 0;        ///< of these since the account began [s]; 0 where there is none
-  bool blown_up = false;              ///< the energy is far from what it was when the account began
-  std::string warning;  ///< what is wrong with the step, in words; empty when nothing is
+  double shortest_substep = 0;  ///< of these since the account began [s]; 0 where there is none
+  bool blown_up = false;        ///< the energy is far from what it was when the account began
+  std::string warning;          ///< what is wrong with the step, in words; empty when nothing is
 };
 
 /// Measures a state, and what a step of `time_step` [s] from there costs in accuracy.

@@ -51,9 +51,12 @@ void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
   wrapper.add("real-time factor", status.real_time_factor);
   wrapper.add("wall time of a step [s]", status.step_wall_time);
   wrapper.add("local error [rad]", status.local_error);
+  wrapper.add("error rate [rad/s]", status.error_rate);
   wrapper.add("energy error", status.energy_error);
   wrapper.add("angular momentum error", status.angular_momentum_error);
   wrapper.add("norm error", status.norm_error);
+  wrapper.add("divided steps", status.divided_steps);
+  wrapper.add("shortest substep [s]", status.shortest_substep);
   wrapper.add("largest torque [N m]", status.max_torque);
   wrapper.add("progress of relaxation", status.relax_progress);
   wrapper.add("requests refused for numbers that are not finite", news.refusals);

@@ -198,10 +198,16 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
     response.energies = energiesOf(now, frame_id_);
   };
   std::uint32_t steps = 0;
+  double time_step = 0;
   const auto count = [&](const core::Simulation& s) {
-    return steps = stepsIn(request, s.settings().time_step);
+    time_step = s.settings().time_step;
+    return steps = stepsIn(request, time_step);
   };
   if (runner_.read(count) == 0) {
+    if (request.duration != 0) {
+      response.message = "did no step: a duration of " + core::toText(request.duration) +
+                         " s is less than half of the time step, " + core::toText(time_step) + " s";
+    }
     report();
     return;
   }

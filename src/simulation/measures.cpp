@@ -116,8 +116,8 @@ std::string percentOf(double share) {
 std::string passageIn(const Passage& shortest) {
   if (shortest.substep == 0) return "";
   return std::string(shortest.kind) + " " + std::to_string(shortest.spring_id) + " passed " +
-         roundedText(shortest.distance) + " from " + shortest.place + " at t = " +
-         toText(shortest.time) + " s";
+         roundedText(shortest.distance) + " from " + shortest.place +
+         " at t = " + toText(shortest.time) + " s";
 }
 
 std::string warningOf(const Measures& measures, double time_step, const State& state) {
@@ -129,8 +129,8 @@ std::string warningOf(const Measures& measures, double time_step, const State& s
   const std::string step = "the time step of " + toText(time_step) + " s";
   const std::string stable = toText(measures.stable_time_step) + " s";
   if (measures.blown_up) {
-    const std::string off = "the energy is off by " + percentOf(measures.energy_error) +
-                            " % since the account began";
+    const std::string off =
+        "the energy is off by " + percentOf(measures.energy_error) + " % since the account began";
     if (time_step > measures.stable_time_step) {
       return off + ": " + step + " is too long for this scene (stable here: " + stable + ")";
     }

@@ -48,14 +48,14 @@ class TestLongCalls(NodeTest):
         self.assertLess(time.monotonic() - start, SOON)
         self.assertIn('cancelled', response.message)
         self.assertEqual(0, np.abs(angular_velocities(self.node.get_scene())).max())
-        self.assertEqual(0, self.node.step(0).energies.kinetic)
+        self.assertEqual(0, self.node.step(steps=0).energies.kinetic)
         return response
 
     def test_a_cancelled_relaxation(self):
         response = self.cancelled(self.begin(RELAXING_FOR_EVER))
         self.assertFalse(response.converged)
         self.assertLess(response.energy_after, response.energy_before)
-        self.assertAlmostEqual(response.energy_after, self.node.step(0).energies.potential,
+        self.assertAlmostEqual(response.energy_after, self.node.step(steps=0).energies.potential,
                                delta=1e-9 * response.energy_before)
         self.assertEqual(self.before.time, self.node.get_scene().time)
 
@@ -74,7 +74,7 @@ class TestLongCalls(NodeTest):
             self.assert_changes_are_refused('~' + long_call['service'])
             self.cancelled(call)
             self.assert_same_scene_but_for_places()
-            self.node.step(1)
+            self.node.step(steps=1)
 
     def assert_same_scene_but_for_places(self):
         scene = self.node.get_scene()
@@ -84,7 +84,7 @@ class TestLongCalls(NodeTest):
 
     def assert_reads_are_answered(self):
         self.assert_same_scene_but_for_places()
-        self.assertGreater(self.node.step(0).energies.potential, 0)
+        self.assertGreater(self.node.step(steps=0).energies.potential, 0)
         self.node.save_scene('meanwhile.json')
 
     def assert_changes_are_refused(self, reason):
@@ -123,11 +123,11 @@ class TestLongCalls(NodeTest):
 class TestNothingUnderWay(NodeTest):
     def test_cancelling_changes_nothing(self):
         add_knot(self.node, particles=10)
-        self.node.step(10)
+        self.node.step(steps=10)
         before = self.node.get_scene()
         self.assertIn('nothing', self.node.cancel().message)
         self.assertEqual(exact(before), exact(self.node.get_scene()))
-        self.assertAlmostEqual(before.time + 5e-3, self.node.step(5).time, delta=1e-12)
+        self.assertAlmostEqual(before.time + 5e-3, self.node.step(steps=5).time, delta=1e-12)
         self.assertTrue(self.node.relax().converged)
 
 

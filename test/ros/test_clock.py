@@ -103,7 +103,7 @@ class TestClock(ClockTest):
         scene = self.node.get_scene()
         self.assertGreater(steps, 100)
         self.node.reset()
-        self.node.step(steps)
+        self.node.step(steps=steps)
         self.assertEqual(exact(scene), exact(self.node.get_scene()))
 
     def test_samples_are_stamped_by_the_clock(self):

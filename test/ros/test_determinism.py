@@ -21,12 +21,12 @@ class TestDeterminism(unittest.TestCase):
                 node = process.client()
                 add_random_scene(node, seed=8, particles=300, springs=400)
                 bring_there(node)
-                energies = node.step(0).energies
+                energies = node.step(steps=0).energies
                 return exact(node.get_scene()), energies.total, energies.dissipated
 
     @classmethod
     def setUpClass(cls):
-        cls.in_peace = cls().scene_after(lambda node: node.step(STEPS))
+        cls.in_peace = cls().scene_after(lambda node: node.step(steps=STEPS))
 
     def test_under_all_that_may_go_on_beside(self):
         def step_amid_calls(node):
@@ -36,7 +36,7 @@ class TestDeterminism(unittest.TestCase):
             def keep_reading():
                 while not steps.done():
                     node.get_scene()
-                    node.step(0)
+                    node.step(steps=0)
                     calls['reads'] += 1
 
             def keep_saving():
@@ -67,7 +67,7 @@ class TestDeterminism(unittest.TestCase):
     def test_of_steps_in_any_portions(self):
         def step_in_portions(node):
             for steps in (1, 2, 497, 1000):
-                node.step(steps)
+                node.step(steps=steps)
 
         self.assertEqual(self.in_peace, self.scene_after(step_in_portions))
 
@@ -78,7 +78,7 @@ class TestDeterminism(unittest.TestCase):
             node.set_running(False)
             done = round(node.get_scene().time * 1000)
             self.assertLess(done, STEPS)
-            node.step(STEPS - done)
+            node.step(steps=STEPS - done)
 
         # Slowly, so that not all of them are made before the node is told to stop.
         self.assertEqual(self.in_peace,

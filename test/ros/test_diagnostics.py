@@ -38,7 +38,7 @@ class TestDiagnostics(unittest.TestCase):
         with paused() as process:
             node = process.client()
             add_octant(node, damping=0.1)
-            node.step(50)
+            node.step(steps=50)
             # While it takes steps on request it is running, at the last of them too.
             status = self.status_of(
                 process, lambda s: s.message == 'paused' and
@@ -101,7 +101,7 @@ class TestDiagnostics(unittest.TestCase):
         with paused(time_step=5) as process:
             node = process.client()
             add_octant(node, damping=0)
-            node.step(1000)
+            node.step(steps=1000)
             self.assert_comes(process, ERROR, 'blown up')
 
     def test_what_lies_at_rest_has_not_blown_up(self):

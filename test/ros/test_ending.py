@@ -49,7 +49,7 @@ class EndingTest(unittest.TestCase):
             add_random_scene(node, seed=1, particles=3000, springs=3000)
             node.save_scene('scene.json')
             self.old = read(self.path)
-            node.step(1)
+            node.step(steps=1)
             node.save_scene('new.json')
         self.new = read(os.path.join(self.directory, 'new.json'))
 

@@ -38,7 +38,7 @@ class TestRoundTrip(FileTest):
         springs = ids_of(self.node.get_scene())
         self.node.remove_springs(*[[ids[0], ids[3]] for ids in springs.values()])
         self.node.add_particles([particle((1, 0, 0), (0, 5e-324, -0.0), mass=1e-30, damping=1e30)])
-        self.node.step(137)
+        self.node.step(steps=137)
         saved = self.node.get_scene()
         self.node.save_scene('random.json')
 
@@ -49,14 +49,14 @@ class TestRoundTrip(FileTest):
     def test_going_on_from_a_file(self):
         # Sums are in an order that comes from where the particles were added, or loaded.
         add_random_scene(self.node, seed=2, particles=30, springs=50)
-        self.node.step(137)
+        self.node.step(steps=137)
         self.node.save_scene('half_way.json')
-        self.node.step(50)
+        self.node.step(steps=50)
         expected = self.node.get_scene()
 
         self.node.clear()
         self.node.load_scene('half_way.json')
-        self.node.step(50)
+        self.node.step(steps=50)
         scene = self.node.get_scene()
         self.assertEqual(expected.time, scene.time)
         for before, after in zip(expected.particles, scene.particles):
@@ -77,7 +77,7 @@ class TestRoundTrip(FileTest):
     def test_after_a_time_step_that_is_far_too_long(self):
         ids = self.node.add_particles([particle(p, mass=1e-30) for p in OCTANT_CORNERS[:2]]).ids
         self.node.add_springs(angle_springs=[angle_spring(ids, 1e30)])
-        self.node.step(10)
+        self.node.step(steps=10)
         saved = self.node.get_scene()
         self.node.save_scene('wild.json')
         self.node.load_scene('wild.json')
@@ -85,11 +85,11 @@ class TestRoundTrip(FileTest):
 
     def test_a_file_takes_the_place_of_the_scene(self):
         add_random_scene(self.node, seed=1)
-        self.node.step(10)
+        self.node.step(steps=10)
         saved = self.node.get_scene()
         self.node.save_scene('first.json')
         add_random_scene(self.node, seed=2)
-        self.node.step(10)
+        self.node.step(steps=10)
         self.node.load_scene('first.json')
         self.assertEqual(exact(saved), exact(self.node.get_scene()))
 
@@ -129,11 +129,11 @@ class TestRoundTrip(FileTest):
 
     def test_reset_leads_to_what_was_loaded(self):
         add_random_scene(self.node, seed=4)
-        self.node.step(20)
+        self.node.step(steps=20)
         self.node.save_scene('start.json')
         loaded = self.node.get_scene()
         self.node.load_scene('start.json')
-        self.node.step(20)
+        self.node.step(steps=20)
         self.node.reset()
         scene = self.node.get_scene()
         self.assertEqual(exact(loaded.particles), exact(scene.particles))
@@ -150,7 +150,7 @@ class TestPaths(FileTest):
         shutil.copy(self.path('inside.json'), there)
         os.symlink(outside, self.path('directory_link'))
         os.symlink(there, self.path('file_link.json'))
-        self.node.step(5)
+        self.node.step(steps=5)
         content = open(there).read()
         for path in ('../' + os.path.basename(outside) + '/there.json',
                      'missing/../../' + os.path.basename(outside) + '/there.json',
@@ -229,7 +229,7 @@ class TestBadFiles(FileTest):
         super().setUp()
         add_random_scene(self.node, seed=7, particles=5, springs=3)
         self.good = self.saved('good.json')
-        self.node.step(3)
+        self.node.step(steps=3)
 
     def assert_text_refused(self, text, word):
         with open(self.path('bad.json'), 'w') as file:

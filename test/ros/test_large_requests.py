@@ -82,7 +82,7 @@ class TestLargeRequests(unittest.TestCase):
         resource.prlimit(self.process.pid, resource.RLIMIT_AS, (bound, bound))
         self.assert_refused('not enough memory', 'add_particles', many_particles(1000000))
         self.node.add_particles([particle((1, 2, 3))] * 100)
-        self.node.step(10)
+        self.node.step(steps=10)
 
     def test_a_file_beyond_the_limits(self):
         directory = tempfile.TemporaryDirectory()

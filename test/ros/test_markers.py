@@ -82,7 +82,7 @@ class TestMarkers(NodeTest):
         add_octant(self.node, damping=0)
         with self.node.listen('markers', MarkerArray) as arrays:
             arrays.first()
-            self.node.step(1)
+            self.node.step(steps=1)
             arrays.several(2)
             with self.node.listen('poses', rospy.AnyMsg) as poses:
                 poses.several(10)

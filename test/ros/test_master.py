@@ -67,8 +67,8 @@ class TestMaster(unittest.TestCase):
         return process
 
     def assert_time_goes_on(self, step):
-        before = step(0).time
-        wait_until(lambda: step(0).time > before + 0.1)
+        before = step(steps=0).time
+        wait_until(lambda: step(steps=0).time > before + 0.1)
 
     def test_gone_and_back(self):
         self.master.begin()

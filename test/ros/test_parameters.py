@@ -24,7 +24,7 @@ class TestTime(unittest.TestCase):
     def test_time_step(self):
         with paused(time_step=0.125) as process:
             node = process.client()
-            self.assertEqual(0.375, node.step(3).time)
+            self.assertEqual(0.375, node.step(steps=3).time)
             with node.listen('status', Status) as statuses:
                 self.assertEqual(0.125, statuses.first().time_step)
 
@@ -34,7 +34,7 @@ class TestTime(unittest.TestCase):
             node = process.client()
             ids = node.add_particles([particle((1, 0, 0)), particle((0, 1, 0))]).ids
             node.add_springs(angle_springs=[angle_spring(ids, rest_angle=1)])
-            node.step(steps)
+            node.step(steps=steps)
             with node.listen('status', Status) as statuses:
                 self.assertEqual(integrator, statuses.first().integrator)
             expected = 1 + (math.pi / 2 - 1) * math.cos(math.sqrt(2))
@@ -82,7 +82,7 @@ class TestThreads(unittest.TestCase):
             with paused(threads=threads) as process:
                 node = process.client()
                 add_random_scene(node, seed=1, particles=5000, springs=5000)
-                report = node.step(100).energies
+                report = node.step(steps=100).energies
                 scene = node.get_scene()
                 bits.append((positions(scene).tobytes(), angular_velocities(scene).tobytes(),
                              report.total, report.dissipated))
@@ -102,7 +102,7 @@ class TestSpringDamping(unittest.TestCase):
                 return masses(scene) @ angular_velocities(scene)
 
             begin = momentum()
-            self.assertGreater(node.step(500).energies.dissipated, 0.01)
+            self.assertGreater(node.step(steps=500).energies.dissipated, 0.01)
             return np.linalg.norm(momentum() - begin)
 
     def test_only_relative_damping_keeps_the_angular_momentum(self):
@@ -116,7 +116,7 @@ class TestSpringDamping(unittest.TestCase):
                                       particle((0, 1, 0), (0, 0, 3), mass=4)]).ids
             node.add_springs(angle_springs=[
                 angle_spring(ids, 1e-30, rest_angle=1, damping=0.5)])
-            seconds = node.step(1000).time
+            seconds = node.step(steps=1000).time
             np.testing.assert_allclose(
                 angular_velocities(node.get_scene())[:, 2],
                 [math.exp(-0.5 / 2 * seconds), 3 * math.exp(-0.5 / 4 * seconds)], rtol=1e-12)
@@ -168,7 +168,7 @@ class TestFiles(unittest.TestCase):
             with paused(scene_directory=directory + '/made/by/the/node') as process:
                 node = process.client()
                 add_octant(node, damping=0.1)
-                node.step(10)
+                node.step(steps=10)
                 saved = node.get_scene()
                 node.save_scene('first.json')
             self.assertEqual(['first.json'], os.listdir(directory + '/made/by/the/node'))

@@ -53,7 +53,7 @@ class TestAdding(NodeTest):
 
     def test_what_is_there_stays_where_it_has_come_to(self):
         self.node.add_particles([particle((1, 0, 0), (0, 1, 2))])
-        self.node.step(100)
+        self.node.step(steps=100)
         before = self.node.get_scene()
         self.node.add_particles([particle((0, 1, 0))])
         after = self.node.get_scene()
@@ -65,7 +65,7 @@ class TestAdding(NodeTest):
             [particle((1, 0, 0), (0, 5, 5), pinned=True), particle((0, 1, 0))]).ids
         self.node.add_springs(angle_springs=[angle_spring([pinned, free])])
         before = positions(self.node.get_scene())
-        self.node.step(1000)
+        self.node.step(steps=1000)
         after = positions(self.node.get_scene())
         self.assertEqual(tuple(before[0]), tuple(after[0]))
         self.assertGreater(np.linalg.norm(after[1] - before[1]), 0.1)
@@ -76,7 +76,7 @@ class TestAdding(NodeTest):
 class TestSetting(NodeTest):
     def test_sets_those_and_no_others(self):
         ids = add_octant(self.node, damping=0)
-        self.node.step(100)
+        self.node.step(steps=100)
         before = self.node.get_scene()
         given = [particle((0, 0, 1), (3, 0, 0), mass=4, damping=5),
                  particle((0, 1, 0), (0, 0, 6), mass=7, pinned=False)]
@@ -91,7 +91,7 @@ class TestSetting(NodeTest):
         ids = self.node.add_particles([particle((1, 0, 0)), particle((0, 1, 0), pinned=True)]).ids
         self.node.add_springs(angle_springs=[angle_spring(ids)])
         self.node.set_particles(ids[:1], [particle((1, 0, 0), mass=4)])
-        self.node.step(1)
+        self.node.step(steps=1)
         speed = np.linalg.norm(angular_velocities(self.node.get_scene())[0])
         self.assertAlmostEqual(1e-3 * np.pi / 2 / 4, speed, delta=1e-12)
 
@@ -120,7 +120,7 @@ class TestRemoving(NodeTest):
     def test_others_go_on_where_they_are(self):
         ids = self.node.add_particles(
             [particle((1, 0, 0)), particle((0, 1, 0), (2, 0, 1)), particle((0, 0, 1))]).ids
-        self.node.step(100)
+        self.node.step(steps=100)
         before = self.node.get_scene().particles[1]
         self.node.remove_particles(ids[:1])
         self.assertEqual(exact(before), exact(self.node.get_scene().particles[0]))

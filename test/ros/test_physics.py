@@ -23,7 +23,7 @@ class TestClosedForms(NodeTest):
         # Strang's splitting swings at a slightly different frequency, and exactly so.
         discrete = 2 / TIME_STEP * math.asin(frequency * TIME_STEP / 2)
         for _ in range(5):
-            time = self.node.step(steps).time
+            time = self.node.step(steps=steps).time
             deviation = angle(*positions(self.node.get_scene())) - rest
             self.assertAlmostEqual(amplitude * math.cos(frequency * time), deviation, delta=1e-5)
             self.assertAlmostEqual(amplitude * math.cos(discrete * time), deviation, delta=1e-11)
@@ -31,7 +31,7 @@ class TestClosedForms(NodeTest):
     def test_a_damped_particle_slows_down_exponentially(self):
         damping, mass, speed = 0.7, 2, 3
         self.node.add_particles([particle((1, 0, 0), (0, 0, speed), mass=mass, damping=damping)])
-        report = self.node.step(1500)
+        report = self.node.step(steps=1500)
         left = speed * math.exp(-damping / mass * 1.5)
         self.assertAlmostEqual(left, angular_velocities(self.node.get_scene())[0][2], delta=1e-12)
         self.assertAlmostEqual(mass * (speed ** 2 - left ** 2) / 2, report.energies.dissipated,
@@ -45,14 +45,14 @@ class TestClosedForms(NodeTest):
             particle((math.cos(1), math.sin(1), 0), (0, 0, 2), mass=mass)]).ids
         self.node.add_springs(angle_springs=[
             angle_spring(ids, 1e-30, rest_angle=1, damping=damping)])
-        time = self.node.step(500).time
+        time = self.node.step(steps=500).time
         parting = math.exp(-2 * damping / mass * time)
         np.testing.assert_allclose(angular_velocities(self.node.get_scene())[:, 2],
                                    [1.5 - parting / 2, 1.5 + parting / 2], atol=1e-12)
 
     def test_the_octant(self):
         add_octant(self.node, damping=1)
-        self.node.step(100000)
+        self.node.step(steps=100000)
         scene = self.node.get_scene()
         corners = positions(scene)
         for a, b in ((0, 1), (1, 2), (2, 0)):
@@ -64,7 +64,7 @@ class TestEnergies(NodeTest):
     def test_are_those_of_the_definitions(self):
         add_random_scene(self.node, seed=1, particles=30, springs=40)
         for _ in range(3):
-            report = self.node.step(100).energies
+            report = self.node.step(steps=100).energies
             expected = energies(self.node.get_scene())
             for kind, value in expected.items():
                 self.assertGreater(value, 0.1)
@@ -72,9 +72,9 @@ class TestEnergies(NodeTest):
 
     def test_nothing_is_lost_or_won(self):
         add_mixed_octant(self.node)
-        begin = self.node.step(0).energies
+        begin = self.node.step(steps=0).energies
         for _ in range(10):
-            now = self.node.step(200).energies
+            now = self.node.step(steps=200).energies
             self.assertAlmostEqual(1, (now.total + now.dissipated) / begin.total, delta=3e-6)
         self.assertGreater(now.dissipated, 0.1 * begin.total)
 
@@ -90,5 +90,5 @@ class TestEnergies(NodeTest):
             return masses(scene) @ angular_velocities(scene)
 
         begin = momentum()
-        self.node.step(3000)
+        self.node.step(steps=3000)
         np.testing.assert_allclose(momentum(), begin, atol=1e-11)

@@ -58,7 +58,7 @@ class RefusalTest(NodeTest):
         corners = [particle(p, (1, 2, 3), damping=0.1) for p in OCTANT_CORNERS]
         self.ids = list(self.node.add_particles(corners).ids)
         self.spring_ids = ids_of(self.node.add_springs(**self.good_springs(5)))
-        self.node.step(10)
+        self.node.step(steps=10)
 
     def good_springs(self, count):
         return {kind: [build(self.ids[:ENDS[kind]]) for _ in range(count)]

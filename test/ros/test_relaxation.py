@@ -23,7 +23,7 @@ class TestOutcome(NodeTest):
         for method in METHODS:
             self.node.clear()
             add_octant(self.node, damping=0.5)
-            self.node.step(100)
+            self.node.step(steps=100)
             time = self.node.get_scene().time
             outcome = self.node.relax(method=method, tolerance=1e-12)
             self.assertTrue(outcome.converged, outcome.message)
@@ -39,21 +39,21 @@ class TestOutcome(NodeTest):
 
     def test_particles_are_at_rest_afterwards(self):
         add_octant(self.node, damping=0.5)
-        self.node.step(100)
+        self.node.step(steps=100)
         self.node.relax()
         scene = self.node.get_scene()
         self.assertEqual(0, np.abs(angular_velocities(scene)).max())
-        report = self.node.step(0).energies
+        report = self.node.step(steps=0).energies
         self.assertEqual((0, 0), (report.kinetic, report.dissipated))
-        self.node.step(100)
+        self.node.step(steps=100)
         np.testing.assert_allclose(positions(self.node.get_scene()), positions(scene), atol=1e-8)
 
     def test_energies_before_and_after_are_those_of_the_scene(self):
         add_mixed_octant(self.node)
-        before = self.node.step(0).energies.potential
+        before = self.node.step(steps=0).energies.potential
         outcome = self.node.relax()
         self.assertAlmostEqual(before, outcome.energy_before, delta=1e-12 * before)
-        after = self.node.step(0).energies.potential
+        after = self.node.step(steps=0).energies.potential
         self.assertAlmostEqual(after, outcome.energy_after, delta=1e-12 * before)
         self.assertLess(after, 0.9 * before)
 
@@ -117,13 +117,13 @@ class TestEnd(NodeTest):
 
     def test_max_time(self):
         add_knot(self.node)
-        before = self.node.step(0).energies.potential
+        before = self.node.step(steps=0).energies.potential
         outcome = self.node.relax(method='dynamics', tolerance=1e-30, max_time=0.3)
         self.assertFalse(outcome.converged)
         self.assertIn('max_time', outcome.message)
         self.assertGreaterEqual(outcome.wall_time, 0.3)
         self.assertLess(outcome.energy_after, before)
-        self.assertAlmostEqual(outcome.energy_after, self.node.step(0).energies.potential,
+        self.assertAlmostEqual(outcome.energy_after, self.node.step(steps=0).energies.potential,
                                delta=1e-9 * before)
         self.assertEqual(0, np.abs(angular_velocities(self.node.get_scene())).max())
 
@@ -145,7 +145,7 @@ class TestEnd(NodeTest):
 class TestRefusals(NodeTest):
     def test_bad_requests(self):
         add_octant(self.node, damping=0.5)
-        self.node.step(50)
+        self.node.step(steps=50)
         before = self.node.get_scene()
         for fields, words in (({'method': 'magic'}, ('method', 'magic', 'allowed')),
                               ({'tolerance': -1}, ('tolerance', '-1', 'allowed')),
@@ -157,4 +157,4 @@ class TestRefusals(NodeTest):
             for word in words:
                 self.assertIn(word, str(refusal.exception))
             self.assertEqual(exact(before), exact(self.node.get_scene()))
-        self.node.step(1)
+        self.node.step(steps=1)

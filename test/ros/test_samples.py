@@ -111,7 +111,7 @@ class TestEnergies(NodeTest):
 
     def test_are_those_of_the_scene(self):
         add_random_scene(self.node, seed=2)
-        self.node.step(100)
+        self.node.step(steps=100)
         expected = energies(self.node.get_scene())
         with self.node.listen('energies', Energies) as samples:
             sample = samples.first(lambda sample: sample.kinetic > 0)

@@ -86,16 +86,16 @@ class TestAtRest(SpringTest):
 
     def test_the_present_value_is_that_after_stepping(self):
         self.node.set_particles(self.corners[:1], [particle((1, 0, 0), (0, -1, 0.5))])
-        self.node.step(700)
+        self.node.step(steps=700)
         self.added(*self.corners)
-        self.assertLess(self.node.step(0).energies.potential, 1e-30)
+        self.assertLess(self.node.step(steps=0).energies.potential, 1e-30)
 
     def test_set_springs_takes_it_too(self):
         a, b, c = self.corners
         ids = ids_of(self.node.add_springs(**one_of_each(a, b, c)))
-        self.assertGreater(self.node.step(0).energies.potential, 1)
+        self.assertGreater(self.node.step(steps=0).energies.potential, 1)
         self.node.set_springs(**same_ids(ids), **one_of_each(a, b, c, at_rest=True))
-        self.assertLess(self.node.step(0).energies.potential, 1e-30)
+        self.assertLess(self.node.step(steps=0).energies.potential, 1e-30)
 
 
 class TestSetting(SpringTest):
@@ -127,6 +127,6 @@ class TestRemoving(SpringTest):
         ids = self.node.add_springs(angle_springs=[angle_spring(self.corners[:2])])
         self.node.remove_springs(angle_spring_ids=ids.angle_spring_ids)
         before = self.node.get_scene()
-        after_energies = self.node.step(10).energies
+        after_energies = self.node.step(steps=10).energies
         self.assertEqual(0, after_energies.total)
         self.assertEqual(exact(before.particles), exact(self.node.get_scene().particles))

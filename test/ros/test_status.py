@@ -31,7 +31,7 @@ class TestTopic(StatusTest):
 
             def have_come():
                 self.node.get_scene()
-                self.node.step(0)
+                self.node.step(steps=0)
                 return len(statuses.all()) >= 5
 
             wait_until(have_come)
@@ -90,7 +90,7 @@ class TestFields(StatusTest):
         self.assertEqual(('verlet', 1e-3), (status.integrator, status.time_step))
 
     def test_time_and_steps(self):
-        self.node.step(300)
+        self.node.step(steps=300)
         status = self.status(lambda status: status.steps == 300)
         self.assertEqual(self.node.get_scene().time, status.time)
         self.node.reset()
@@ -117,7 +117,7 @@ class TestFields(StatusTest):
 
     def test_errors_of_an_undamped_scene(self):
         add_octant(self.node, damping=0)
-        self.node.step(2000)
+        self.node.step(steps=2000)
         status = self.status(lambda status: status.steps == 2000)
         self.assertGreater(status.energy_error, 0)
         self.assertLess(status.energy_error, 1e-5)
@@ -130,7 +130,7 @@ class TestFields(StatusTest):
 
     def test_errors_begin_anew_with_the_account(self):
         add_octant(self.node, damping=0)
-        self.node.step(2000)
+        self.node.step(steps=2000)
         self.status(lambda status: status.energy_error > 0)
         self.node.reset()
         self.status(lambda status: status.energy_error == 0)
@@ -172,7 +172,7 @@ class TestRealTimeFactor(unittest.TestCase):
         node, statuses = self.start('false')
         node.load_scene('late.json')
         statuses.first(lambda status: status.time == self.LATE)
-        node.step(3)
+        node.step(steps=3)
         statuses.first(lambda status: status.steps == 3 and status.state == 'paused')
         node.clear()
         statuses.first(lambda status: status.particles == 0 and status.steps == 0)
