@@ -75,7 +75,7 @@ Allowed<std::string> someText(const char* words) {
   return {words, [](const std::string& text) { return !text.empty(); }};
 }
 
-/// What is allowed at start and while the node runs.
+/// The values of `Pace` that are allowed, at start and while the node runs.
 struct AllowedPace {
   Allowed<double> time_step = inside({1e-12, Pace::kLongestTimeStep, "1e-12 to 1e6 [s]"});
   Allowed<std::string> integrator = oneOf({"euler", "verlet", "fourth_order", "implicit_euler"});

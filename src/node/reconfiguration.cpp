@@ -106,7 +106,7 @@ void Reconfiguration::refuse(const std::exception& fault) noexcept {
   logFault("not reconfigured", reason);
 }
 
-/// What holds now.
+/// Returns the parameters that hold now.
 Pace Reconfiguration::present() const {
   Pace now = pace_;
   now.running = runner_.isRunning();

@@ -48,7 +48,8 @@ class Newton : public Descent {
   const char* whyStuck() const override;
   Points positions() const override { return energy_.positions(); }
   double value() const override { return energy_.energy(); }
-  /// What the descent lowers: the sum of the groups' energies, each in its unit (`TangentEnergy`).
+  /// Returns the sum of the groups' energies, each in its unit (`TangentEnergy`), which the descent
+  /// lowers.
   double scaledValue() const { return energy_.value(); }
   double maxTorque() const override { return energy_.maxTorque(); }
   double excess() const override { return excess_; }

@@ -26,11 +26,11 @@ double sumOfMomenta(const System& system, const State& state) {
   return state.angular_velocities.colwise().norm().dot(system.masses().transpose());
 }
 
-}  // namespace
-
-// What rounding of angles and solid angles makes of the energy of a spring, by its stiffness
-// [rad^2] or [sr^2].
+/// Rounding of angles and solid angles may change the energy of a spring by this times its
+/// stiffness [rad^2] or [sr^2].
 constexpr double kRounding = 1e-20;
+
+}  // namespace
 
 Account::Account(const Plan& plan, const State& state)
     : energy_(energies(plan, state).total() + state.dissipated),

@@ -15,7 +15,8 @@ double rate(double speed, double distance) {
   return speed > 0 ? speed / std::max(distance, kNearest) : 0;
 }
 
-/// Speed by distance from a jump. Who crosses it within so little makes an error as little.
+/// Speed by distance from a jump. A step that crosses it from less than `kNearest` makes an error
+/// that is as small.
 double closingRate(double speed, double distance) {
   constexpr double kNearest = 1e-9;  // of a chord, or of an area [sr]
   return rate(speed, std::max(distance, kNearest));
@@ -68,7 +69,7 @@ double distanceToJump(const SolidAngleSpring& spring, const Triangle& t) {
   return 2 * std::abs(across) / std::sqrt(t.squared_norm);
 }
 
-/// The same at most kNearJump.
+/// Returns whether a distance, as `distanceToJump` has it, is less than kNearJump.
 bool isNearJump(double distance) {
   constexpr double kChord = 0.95885;  // 2 sin (kNearJump / 2)
   return distance < kChord;
@@ -94,8 +95,9 @@ bool isNear(const SolidAngleSpring& spring, const std::array<Vector3, 3>& points
 
 namespace {
 
-// With s = a + b of a nearly antipodal pair, the area is twice the angle of s in the tangent plane:
-// its gradient turns at |ds/dt| / |s|, and by what speed the energy's range, 2 pi^2 k, may give.
+// The area is twice the angle of s = a + b in the tangent plane, for a nearly antipodal pair. So
+// its gradient turns at |ds/dt| / |s|. The spring may give a speed of sqrt(k / m) |C| by the energy
+// that it has.
 void approachVortex(const SolidAngleSpring& spring, const MovingEnds<3>& ends, const Triangle& t,
                     Approach& result) {
   const auto& p = ends.points;

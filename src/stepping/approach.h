@@ -27,8 +27,8 @@ struct MovingEnds {
 /// of those with its velocities; 0 far from any.
 struct Approach {
   double turning = 0;   ///< of the gradient, where it turns within a small part of the sphere
-  double pull = 0;      ///< the same at the speed that the spring may give by the energy it has
-  double falling = 0;   ///< and by the energy that it can have
+  double pull = 0;      ///< of its turn at the speed that the spring may give by the energy it has
+  double falling = 0;   ///< of its turn at the speed that all energy it can have may give
   double closing = 0;   ///< speed by distance of a place where the gradient jumps
   double distance = 0;  ///< from the nearer one, as `Passage` has it
   const char* place = "";

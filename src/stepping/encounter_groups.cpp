@@ -88,8 +88,8 @@ void Encounters::makeGroups(const std::vector<std::uint32_t>& places) {
   }
 }
 
-/// Returns the place of a particle in a group. What is pinned has one in each of its springs'
-/// groups, at each of these springs.
+/// Returns the place of a particle in a group. A pinned particle has places in all groups of its
+/// springs, and may have several in one.
 std::uint32_t Encounters::placeIn(Group& group, std::uint32_t particle) {
   const std::uint32_t place = place_of_[particle];
   if (place < group.particles.size() && group.particles[place] == particle) return place;

@@ -68,7 +68,7 @@ class Motion {
   /// Returns where particles are in the order of the layout, by their indices in the system.
   const std::vector<std::uint32_t>& places() const { return rows_; }
 
-  // A particle's, by its index in the system.
+  // Position and velocity of a particle, by its index in the system.
   Vector3 position(std::uint32_t particle) const {
     return Eigen::Map<const Vector3>(positions_[rows_[particle]].values);
   }

@@ -13,6 +13,7 @@ namespace spherical_springs::core {
 namespace {
 
 using testing::stateOf;
+using testing::stepped;
 using testing::Tumbling;
 using testing::tumblingScene;
 
@@ -22,14 +23,6 @@ std::shared_ptr<const Plan> planOf(const Scene& scene, int threads = 1) {
   System::Options options;
   options.threads = threads;
   return std::make_shared<const Plan>(scene, options);
-}
-
-State stepped(Integrator& integrator, const Scene& scene, int steps) {
-  State state = stateOf(scene);
-  integrator.take(state);
-  integrator.advance(steps);
-  integrator.give(state);
-  return state;
 }
 
 State stepped(const Scene& scene, const std::string& method, double time_step, int steps,

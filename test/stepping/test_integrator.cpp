@@ -46,10 +46,7 @@ double distanceFromReport(const Scene& scene, double time_step, int steps) {
   // The report knows of no steps that are divided.
   BlockedSplitting euler(std::make_shared<const Plan>(scene, System::Options()),
                          splittingScheme(IntegrationMethod::euler), time_step, Passing::ignored);
-  State state = testing::stateOf(scene);
-  euler.take(state);
-  euler.advance(steps);
-  euler.give(state);
+  const State state = testing::stepped(euler, scene, steps);
   double largest = 0;
   for (std::size_t i = 0; i < plain.particles.size(); ++i) {
     const report::Vector p = plain.particles[i].position;

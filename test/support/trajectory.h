@@ -14,6 +14,14 @@
 
 namespace spherical_springs::core::testing {
 
+inline State stepped(Integrator& integrator, const Scene& scene, int steps) {
+  State state = stateOf(scene);
+  integrator.take(state);
+  integrator.advance(steps);
+  integrator.give(state);
+  return state;
+}
+
 struct Trajectory {
   std::shared_ptr<const Plan> plan;
   State state;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <type_traits>
 
 #include "scenes.h"
 
@@ -16,7 +15,19 @@ struct Tumbling {
   bool of_all_masses = false;  ///< over four decades, in place of 1
 };
 
-/// Springs join random particles, and are far from rest.
+/// Adds springs between random particles, each as `make(spring)` sets its numbers.
+template <class Spring, class Make>
+void addSprings(int count, std::uint32_t particles, Random& random, SpringLists& springs,
+                const Make& make) {
+  for (int s = 0; s < count; ++s) {
+    Spring spring;
+    spring.particles = random.distinctBelow<Spring::kParticles>(particles);
+    make(spring);
+    springs.get<Spring>().push_back(spring);
+  }
+}
+
+/// A scene whose springs join random particles and are far from rest.
 inline Scene tumblingScene(unsigned seed, const Tumbling& has = {}) {
   Random random(seed);
   std::vector<Particle> particles(has.particles);
@@ -25,33 +36,22 @@ inline Scene tumblingScene(unsigned seed, const Tumbling& has = {}) {
     particles[i].pinned = i < has.pinned;
     if (has.of_all_masses) particles[i].mass = std::pow(10, random.between(-2, 2));
   }
-  const auto join = [&](auto& spring) {
-    constexpr std::size_t kEnds = std::decay_t<decltype(spring)>::kParticles;
-    spring.particles = random.distinctBelow<kEnds>(has.particles);
-  };
   SpringLists springs;
-  for (int s = 0; s < has.arcs; ++s) {
-    AngleSpring spring;
-    join(spring);
+  addSprings<AngleSpring>(has.arcs, has.particles, random, springs, [&](AngleSpring& spring) {
     spring.rest_angle = random.between(0.2, 2.5);
     spring.stiffness = random.between(0.2, 2);
-    springs.get<AngleSpring>().push_back(spring);
-  }
-  for (int s = 0; s < has.triangles; ++s) {
-    SolidAngleSpring spring;
-    join(spring);
-    spring.rest_solid_angle = random.between(-2, 4);
-    spring.stiffness = random.between(0.1, 0.5);
-    springs.get<SolidAngleSpring>().push_back(spring);
-  }
-  for (int s = 0; s < has.oriented; ++s) {
-    OrientedAngleSpring spring;
-    join(spring);
-    spring.rest_angle = random.between(-2, 2);
-    spring.width = random.between(0.05, 0.5);
-    spring.stiffness = random.between(0.1, 0.5);
-    springs.get<OrientedAngleSpring>().push_back(spring);
-  }
+  });
+  addSprings<SolidAngleSpring>(has.triangles, has.particles, random, springs,
+                               [&](SolidAngleSpring& spring) {
+                                 spring.rest_solid_angle = random.between(-2, 4);
+                                 spring.stiffness = random.between(0.1, 0.5);
+                               });
+  addSprings<OrientedAngleSpring>(has.oriented, has.particles, random, springs,
+                                  [&](OrientedAngleSpring& spring) {
+                                    spring.rest_angle = random.between(-2, 2);
+                                    spring.width = random.between(0.05, 0.5);
+                                    spring.stiffness = random.between(0.1, 0.5);
+                                  });
   return sceneOf(particles, springs);
 }
 
