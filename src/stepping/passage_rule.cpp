@@ -11,7 +11,7 @@ double PassageRule::longestShare() const {
 
 namespace {
 
-/// What a spring bears in a step.
+/// Limits that a spring bears in a step.
 struct Tolerance {
   double turn;      ///< of its gradient, by h Omega
   double urgent;    ///< times that: more lets its neighbours follow

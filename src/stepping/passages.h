@@ -44,8 +44,8 @@ class Passages {
     std::uint32_t particle_begin, particle_end, spring_begin, spring_end;  // in those of the level
     bool is_changed;  // since the first drift was last done
   };
-  /// What a step at one depth needs, kept from step to step. Lists of springs follow the part's;
-  /// flags of particles, the group's.
+  /// Memory of the steps at one depth. Lists of springs have an entry for each spring of the part,
+  /// and flags of particles one for each particle of the group.
   struct Level {
     std::vector<Vector3> positions, angular_velocities;  // of the part's particles at first
     std::vector<Vector3> entered;                        // their velocities before the first kick

@@ -2,9 +2,9 @@
 
 #include <Eigen/SVD>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "base/parallel.h"
 
 namespace spherical_springs::core {
@@ -12,26 +12,20 @@ namespace {
 
 /// The number of each particle's group: those that springs join, directly or by others.
 std::vector<std::uint32_t> groupsOf(const System& system) {
-  std::vector<std::uint32_t> parent(system.particleCount());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets sets(system.particleCount());
   forEachKind([&](auto kind) {
     for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-      const std::uint32_t first = root(spring.particles[0]);
-      for (std::size_t j = 1; j < spring.particles.size(); ++j) {
-        parent[root(spring.particles[j])] = first;
+      for (const std::uint32_t particle : spring.particles) {
+        sets.join(spring.particles[0], particle);
       }
     }
   });
-  std::vector<std::uint32_t> number(parent.size());
+  std::vector<std::uint32_t> number(system.particleCount());
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < parent.size(); ++i) {
-    if (parent[i] == i) number[i] = count++;
+  for (std::uint32_t i = 0; i < number.size(); ++i) {
+    if (sets.rootOf(i) == i) number[i] = count++;
   }
-  for (std::uint32_t i = 0; i < parent.size(); ++i) number[i] = number[root(i)];
+  for (std::uint32_t i = 0; i < number.size(); ++i) number[i] = number[sets.rootOf(i)];
   return number;
 }
 
