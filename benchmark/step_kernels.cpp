@@ -64,11 +64,12 @@ void forces(benchmark::State& state, const StepKernels* kernels) {
   Lattice lattice;
   std::vector<Group> groups;
   Lattice::fill(groups);
-  std::vector<std::uint32_t> hard(groups.size() * kGroup);
+  std::vector<std::uint32_t> hard(groups.size() * kGroup), near(groups.size() * kGroup);
   const auto count = static_cast<std::uint32_t>(groups.size());
   for (auto _ : state) {
+    MarkedElements marked{hard.data(), near.data()};
     std::get<ForceKernel<Group>>(kernels->forces)(groups.data(), count, lattice.positions[0].values,
-                                                  lattice.forces[0].values, hard.data());
+                                                  lattice.forces[0].values, marked);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * groups.size() * kGroup));
