@@ -5,6 +5,9 @@
 
 namespace spherical_springs::core {
 
+/// The share of an energy, a sum over all springs, below which differences are rounding.
+inline constexpr double kEnergyRounding = 1e-13;
+
 /// One way down the energy.
 class Descent {
  public:

@@ -64,8 +64,8 @@ ModelMinimum ModelSolver::minimum(const TangentEnergy& energy,
                                   const Eigen::VectorXd& gradient, double tolerance) {
   if (!double_.preconditioner) {
     const auto make = [&](const Blocks<float, 2>& values) {
-      return std::make_unique<Multigrid<float>>(pattern_, values, energy.rotations<float>(),
-                                                threads_);
+      return std::make_unique<Multigrid<float>>(pattern_, values,
+                                                energy.places().rotations<float>(), threads_);
     };
     auto result = solve(single_, energy, definite, shifts, weights, gradient, tolerance, make);
     if (result.indefinite || result.residual <= tolerance || !tryCholesky()) return result;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "relaxation/negative_curvature.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -14,8 +13,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLongestMove = 0.7;  // of a particle in one step [rad]
 constexpr double kLeastShift = 1e-7;  // rotations of the whole scene need one
 constexpr double kGreatestShift = 1e3;
-constexpr double kNegligible = 1e-6;          // curvature below 0, of the stiffness
-constexpr double kRounding = 1e-13;           // of an energy, a sum over all springs
 constexpr double kPoor = 0.25, kGood = 0.75;  // drop of the energy, of that of the model
 
 /// Judges the pace by a drop of the energy and the one before it.
@@ -116,7 +113,7 @@ void Newton::measureExcess() {
 }
 
 std::vector<bool> Newton::calm() const {
-  std::vector<bool> calm(energy_.positions().cols(), true);
+  std::vector<bool> calm(energy_.places().order().particles.size(), true);
   for (std::size_t i = 0; i < energy_.freeCount(); ++i) {
     calm[energy_.particle(i)] = excessAt(i, stiffnessAt(i)) <= 1;
   }
@@ -182,8 +179,9 @@ void Newton::keepInside(Eigen::VectorXd& step) {
 /// resist, so that the next steps go round them.
 double Newton::allowedShare(const Eigen::VectorXd& step) {
   constexpr double kEase = 0.5;
-  Eigen::VectorXd hold = Eigen::VectorXd::Zero(energy_.positions().cols());
-  const double share = guard_->allowedShare(energy_.positions(), energy_.moves(step), hold);
+  const Points positions = energy_.places().positions();
+  Eigen::VectorXd hold = Eigen::VectorXd::Zero(positions.cols());
+  const double share = guard_->allowedShare(positions, energy_.places().moves(step), hold);
   for (Eigen::Index i = 0; i < hold_.size(); ++i) {
     hold_[i] = std::max(kEase * hold_[i], hold[energy_.particle(i)]);
   }
@@ -219,7 +217,7 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   const double expected = energy_.expectedDrop(minimum.step);
   const double length = scaledLength(minimum.step);
   // Where the energy cannot resolve the drop any more, the gradient still can.
-  const bool resolved = expected > kRounding * value;
+  const bool resolved = expected > kEnergyRounding * value;
   const Model model = model_;
 
   chooseModel(minimum);
@@ -230,8 +228,8 @@ Newton::Trial Newton::tryStep(const ModelMinimum& minimum) {
   if (resolved && ratio < kPoor) correct();
 
   const double drop = value - energy_.value();
-  const bool better =
-      resolved ? drop > 1e-4 * expected : drop > -kRounding * value && scaledGradient() < gradient;
+  const bool better = resolved ? drop > 1e-4 * expected
+                               : drop > -kEnergyRounding * value && scaledGradient() < gradient;
   if (better) {
     if (!resolved || ratio > kGood) {
       shift_ = std::max(shift_ / 4, kLeastShift);
@@ -291,73 +289,6 @@ bool Newton::creeps() {
 const char* Newton::whyStuck() const {
   return creeping_ ? "300 iterations lowered the energy by less than 0.01 %"
                    : "no step lowers the energy";
-}
-
-/// Forgets a scale that is far above the present stiffness somewhere, as where the way has led to
-/// particles on one spot: beside it negative curvature would seem negligible.
-void Newton::scaleToHere() {
-  constexpr double kFarAbove = 100;
-  bool far_above = false;
-  for (Eigen::Index i = 0; i < scale_.size() && !far_above; ++i) {
-    far_above = scale_[i] > kFarAbove * stiffnessAt(i);
-  }
-  if (!far_above) return;
-  scale_.setZero();
-  model_ = Model::definite;
-  evaluate();
-}
-
-bool Newton::leaveSaddle() {
-  if (energy_.freeCount() == 0) return false;
-  shift_ = kNegligible;
-  scaleToHere();
-  if (model_ == Model::definite || model_ == Model::tempered) {
-    model_ = Model::exact;
-    evaluate();
-  }
-  const Eigen::VectorXd downward = downwardDirection();
-  return downward.size() > 0 && goAlong(downward / longestMove(downward));
-}
-
-/// Returns a direction of negative curvature, or an empty one where none is found: for certain in a
-/// small scene; by conjugate gradients elsewhere.
-Eigen::VectorXd Newton::downwardDirection() {
-  constexpr std::size_t kSmall = 1000;  // particles
-  constexpr double kLittleWork = 1e7;   // multiplications
-  constexpr double kProbeTolerance = 3e-2;
-  const BlockPattern& pattern = energy_.pattern();
-  if (pattern.rows() <= kSmall) {
-    MultifrontalCholesky inverse(pattern, threads_);
-    if (inverse.work() <= kLittleWork) {
-      return negativeCurvature(inverse, pattern, energy_.hessian(), scale_, kNegligible);
-    }
-  }
-  const Eigen::VectorXd probe = scattered(energy_.gradient().size());
-  const ModelMinimum found = minimum(probe, kProbeTolerance);
-  if (!found.indefinite || model_ == Model::indefinite) return found.downward;
-  model_ = Model::indefinite;
-  evaluate();
-  return minimum(probe, kProbeTolerance).downward;
-}
-
-/// Moves along a direction as far as that lowers the energy by more than rounding.
-bool Newton::goAlong(const Eigen::VectorXd& direction) {
-  const double value = energy_.value();
-  energy_.mark();
-  for (double length = 0.1; length > 1e-9; length /= 4) {
-    for (const double sign : {1., -1.}) {
-      if (guard_ && allowedShare(sign * length * direction) < 1) continue;
-      energy_.move(sign * length * direction);
-      evaluate();
-      if (energy_.value() < (1 - kRounding) * value) {
-        place(energy_.positions());
-        return true;
-      }
-      energy_.goBack();
-    }
-  }
-  evaluate();
-  return false;
 }
 
 }  // namespace spherical_springs::core

@@ -46,7 +46,7 @@ class Newton : public Descent {
   void place(const Points& positions) override;
   bool iterate() override;
   const char* whyStuck() const override;
-  Points positions() const override { return energy_.positions(); }
+  Points positions() const override { return energy_.places().positions(); }
   double value() const override { return energy_.energy(); }
   /// Returns the sum of the groups' energies, each in its unit (`TangentEnergy`), which the descent
   /// lowers.

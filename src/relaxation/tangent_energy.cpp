@@ -29,8 +29,8 @@ std::uint32_t lowestOf(const Spring& spring) {
 
 TangentEnergy::TangentEnergy(const System& system, const Points& positions, Eigen::VectorXd inertia)
     : threads_(system.threads()),
-      order_(particleOrder(freeParticles(system, inertia.size() > 0), positions)),
-      pattern_(freeGraph(system, order_, threads_), threads_),
+      places_(particleOrder(freeParticles(system, inertia.size() > 0), positions), threads_),
+      pattern_(freeGraph(system, places_.order(), threads_), threads_),
       far_apart_(farApart(pattern_.graph, pattern_.order, threads_)),
       units_(inertia.size() > 0 ? std::vector<std::uint32_t>(freeCount(), 0)
                                 : componentsOf(pattern_.graph)),
@@ -50,10 +50,10 @@ void TangentEnergy::compile(const System& system) {
   const auto& springs = system.springs<Spring>();
   const std::size_t blocks = pattern_.order.blocks();
   const auto numbered = [&](Spring spring) {
-    for (std::uint32_t& i : spring.particles) i = order_.numbers[i];
+    for (std::uint32_t& i : spring.particles) i = order().numbers[i];
     return spring;
   };
-  auto by_lowest = dealtOut<std::uint32_t>(order_.particles.size(), [&](const auto& visit) {
+  auto by_lowest = dealtOut<std::uint32_t>(order().particles.size(), [&](const auto& visit) {
     for (std::uint32_t s = 0; s < springs.size(); ++s) visit(lowestOf(numbered(springs[s])), s);
   });
   compiled.first.resize(blocks + 1);
@@ -79,10 +79,10 @@ void TangentEnergy::compile(const System& system) {
 
 bool TangentEnergy::fits(const System& system) const {
   constexpr double kMostChange = 2;  // factor of a stiffness
-  if (static_cast<std::size_t>(system.particleCount()) != order_.particles.size()) return false;
+  if (static_cast<std::size_t>(system.particleCount()) != order().particles.size()) return false;
   const std::vector<bool> free = freeParticles(system, inertia_.size() > 0);
-  for (std::size_t n = 0; n < order_.particles.size(); ++n) {
-    if (free[order_.particles[n]] != (n < freeCount())) return false;
+  for (std::size_t n = 0; n < order().particles.size(); ++n) {
+    if (free[order().particles[n]] != (n < freeCount())) return false;
   }
   bool fits = true;
   forEachKind([&](auto kind) {
@@ -96,7 +96,7 @@ bool TangentEnergy::fits(const System& system) const {
       fits = stiffness <= kMostChange * spring.stiffness &&
              spring.stiffness <= kMostChange * stiffness;
       for (std::size_t j = 0; j < Spring::kParticles; ++j) {
-        fits = fits && order_.numbers[spring.particles[j]] == compiled.springs[s].particles[j];
+        fits = fits && order().numbers[spring.particles[j]] == compiled.springs[s].particles[j];
       }
     }
   });
@@ -110,7 +110,7 @@ double TangentEnergy::unitOf(const Spring& spring) const {
 }
 
 void TangentEnergy::take(const System& system) {
-  units_.take(system, order_, inertia_.size() > 0 ? inertia_.maxCoeff() : 0);
+  units_.take(system, order(), inertia_.size() > 0 ? inertia_.maxCoeff() : 0);
   forEachKind([&](auto kind) {
     using Spring = typename decltype(kind)::type;
     auto& compiled = compiled_.get<Spring>();
@@ -124,33 +124,13 @@ void TangentEnergy::take(const System& system) {
   });
 }
 
-namespace {
-
-/// The frame turned as little as leaves it tangent at `p`.
-TangentFrame carried(const TangentFrame& frame, const Vector3& p) {
-  const Vector3 x = frame.col(0);
-  TangentFrame result;
-  result.col(0) = (x - x.dot(p) * p).normalized();
-  result.col(1) = p.cross(result.col(0));
-  return result;
-}
-
-}  // namespace
-
 void TangentEnergy::place(const Points& positions) {
-  places_.resize(order_.particles.size());
-  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
-    const Vector3 point = positions.col(order_.particles[n]);
-    places_[n] = {tangentFrame(point), point};
-  });
+  places_.place(positions);
   findPinnedEnergy();
 }
 
 void TangentEnergy::carry(const Points& positions) {
-  parallelFor(order_.particles.size(), threads_, [&](std::ptrdiff_t n) {
-    const Vector3 point = positions.col(order_.particles[n]);
-    places_[n] = {carried(places_[n].frame, point), point};
-  });
+  places_.carry(positions);
   findPinnedEnergy();
 }
 
@@ -166,21 +146,8 @@ void TangentEnergy::findPinnedEnergy() {
 
 void TangentEnergy::setTargets(const Points& targets) {
   targets_.resize(freeCount());
-  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(order_.particles[n]);
+  for (std::size_t n = 0; n < freeCount(); ++n) targets_[n] = targets.col(order().particles[n]);
 }
-
-void TangentEnergy::move(const Eigen::VectorXd& step) {
-  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
-    if (step.segment<2>(2 * n).isZero(0)) return;
-    const auto& [frame, from] = places_[n];
-    const Vector3 point = (from + frame * step.segment<2>(2 * n)).normalized();
-    places_[n] = {carried(frame, point), point};
-  });
-}
-
-void TangentEnergy::mark() { marked_places_ = places_; }
-
-void TangentEnergy::goBack() { places_ = marked_places_; }
 
 double TangentEnergy::expectedDrop(const Eigen::VectorXd& step) const {
   const Graph& graph = pattern_.graph;
@@ -218,7 +185,7 @@ double TangentEnergy::add(const Compiled<Spring>& compiled, std::size_t block,
         {&restOf(first), sizeof(Spring)},
         {&first.stiffness, sizeof(Spring)},
         {compiled.places.data(), sizeof(compiled.places[0])}};
-    const HessianArrays arrays = {places_.front().frame.data(),
+    const HessianArrays arrays = {places_[0].frame.data(),
                                   static_cast<std::uint32_t>(freeCount()),
                                   gradient_.data(),
                                   hessian_.front().data(),
@@ -300,7 +267,7 @@ double TangentEnergy::energy() const {
 // The distance from a target is the condition of an angle spring of rest angle 0 to a pinned one.
 void TangentEnergy::addInertia(Curvature curvature) {
   for (std::size_t n = 0; n < freeCount(); ++n) {
-    const double stiffness = inertia_[order_.particles[n]] / unit(n);
+    const double stiffness = inertia_[order().particles[n]] / unit(n);
     const auto& [frame, point] = places_[n];
     const auto c = tangentCondition(AngleSpring(), {point, targets_[n]}, {frame, frame}, curvature);
     value_ += 0.5 * stiffness * c.value * c.value;
@@ -309,21 +276,6 @@ void TangentEnergy::addInertia(Curvature curvature) {
         stiffness * (c.gradient[0] * c.gradient[0].transpose() + c.value * c.hessian[0][0]);
   }
 }
-
-// A rotation vector w moves p by w x p, whose parts along x and y = p x x are w.y and -w.x.
-template <class Real>
-std::vector<Eigen::Matrix<Real, 2, 3>> TangentEnergy::rotations() const {
-  std::vector<Eigen::Matrix<Real, 2, 3>> result(freeCount());
-  parallelFor(freeCount(), threads_, [&](std::ptrdiff_t n) {
-    const TangentFrame& frame = places_[n].frame;
-    result[n].row(0) = frame.col(1).template cast<Real>();
-    result[n].row(1) = -frame.col(0).template cast<Real>();
-  });
-  return result;
-}
-
-template std::vector<Eigen::Matrix<float, 2, 3>> TangentEnergy::rotations() const;
-template std::vector<Eigen::Matrix<double, 2, 3>> TangentEnergy::rotations() const;
 
 double TangentEnergy::maxTorque() const {
   return parallelLargest(freeCount(), threads_, [&](std::ptrdiff_t n) {
@@ -343,21 +295,6 @@ Eigen::VectorXd TangentEnergy::reach() const {
     longest[i] = squared > 0 ? std::sqrt(squared) : 1;
   });
   return longest;
-}
-
-Points TangentEnergy::positions() const {
-  Points result(3, order_.particles.size());
-  parallelFor(order_.particles.size(), threads_,
-              [&](std::ptrdiff_t n) { result.col(order_.particles[n]) = places_[n].point; });
-  return result;
-}
-
-Points TangentEnergy::moves(const Eigen::VectorXd& step) const {
-  Points result = Points::Zero(3, static_cast<Eigen::Index>(order_.particles.size()));
-  for (std::size_t n = 0; n < freeCount(); ++n) {
-    result.col(order_.particles[n]) = places_[n].frame * step.segment<2>(2 * n);
-  }
-  return result;
 }
 
 }  // namespace spherical_springs::core

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/tangent_place.h"
 #include "linear/block_matrix.h"
 #include "relaxation/group_units.h"
+#include "relaxation/tangent_places.h"
 #include "spherical_springs/system.h"
 
 namespace spherical_springs::core {
@@ -42,12 +42,11 @@ class TangentEnergy {
   void carry(const Points& positions);
   void setTargets(const Points& targets);
 
-  /// Moves the free particles by tangent vectors [rad] and back onto the sphere along their
-  /// radius, frames along with them; `evaluate` is to follow.
-  void move(const Eigen::VectorXd& step);
+  /// Moves the free particles as `TangentPlaces` has it; `evaluate` is to follow.
+  void move(const Eigen::VectorXd& step) { places_.move(step); }
   /// Keeps the places of the particles, to go back to.
-  void mark();
-  void goBack();
+  void mark() { places_.mark(); }
+  void goBack() { places_.goBack(); }
 
   /// Value, gradient and Hessian where the particles are.
   void evaluate(Curvature curvature);
@@ -58,11 +57,6 @@ class TangentEnergy {
   double energy() const;
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const Hessian& hessian() const { return hessian_; }
-  /// For each free particle, the matrix that takes a rotation vector of the scene to the particle's
-  /// two unknowns.
-  template <class Real>
-  std::vector<Eigen::Matrix<Real, 2, 3>> rotations() const;
-
   /// The drop of the energy that the quadratic model of the last evaluation foretells for a step.
   double expectedDrop(const Eigen::VectorXd& step) const;
 
@@ -73,14 +67,14 @@ class TangentEnergy {
   /// there is none.
   Eigen::VectorXd reach() const;
 
-  /// Positions of all particles, in the order of their ids.
-  Points positions() const;
-  /// The tangent vectors by which a step moves the particles, in the same order.
-  Points moves(const Eigen::VectorXd& step) const;
+  /// Returns where the particles are, to read.
+  const TangentPlaces& places() const { return places_; }
   /// Particle of each free one.
-  std::uint32_t particle(std::size_t free) const { return order_.particles[free]; }
+  std::uint32_t particle(std::size_t free) const { return order().particles[free]; }
 
  private:
+  const ParticleOrder& order() const { return places_.order(); }
+
   template <class Spring>
   struct Compiled {
     std::vector<Spring> springs;         ///< whose particles are numbers in the order here
@@ -105,14 +99,13 @@ class TangentEnergy {
   void findPinnedEnergy();
 
   int threads_;
-  ParticleOrder order_;
+  TangentPlaces places_;
   BlockPattern pattern_;
   Schedule far_apart_;  // of the pattern's blocks
   PerKind<Compiled> compiled_;
   GroupUnits units_;
   Eigen::VectorXd inertia_;
   std::vector<Vector3> targets_;
-  std::vector<TangentPlace> places_, marked_places_;
   double value_ = 0;
   double pinned_energy_ = 0;  // [J]
   Eigen::VectorXd gradient_;

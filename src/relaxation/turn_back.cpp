@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "relaxation/descent.h"
 #include "system/alignment.h"
 
 namespace spherical_springs::core {

@@ -6,9 +6,6 @@
 
 namespace spherical_springs::core {
 
-/// The share of an energy, a sum over all springs, below which differences are rounding.
-inline constexpr double kEnergyRounding = 1e-13;
-
 /// Turns what springs join as a whole to lie as near as it can to `start`, unless that raises the
 /// energy: nearly antipodal vertices make much of the rounding of a turn. Then measures the
 /// energies of `start` and of the result [J]. `calm`: as `aligned` has it.

@@ -2,13 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
 #include <utility>
-
-#include "relaxation/torque_limit.h"
-#include "relaxation/turn_back.h"
-#include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
 namespace {
@@ -17,8 +11,7 @@ using Clock = std::chrono::steady_clock;
 using Lock = std::lock_guard<FairMutex>;
 using ControlLock = std::lock_guard<std::mutex>;
 
-constexpr std::chrono::milliseconds kSlice(2);       // of stepping between chances for others
-constexpr std::chrono::milliseconds kShowEvery(20);  // what long work has come to
+constexpr std::chrono::milliseconds kSlice(2);  // of stepping between chances for others
 
 }  // namespace
 
@@ -147,130 +140,19 @@ std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& 
   return done;
 }
 
-/// A relaxation on a thread of its own, which may be left to end by itself.
-struct Runner::Work {
-  Work(std::shared_ptr<const System> system, Points start, const RelaxationOptions& options)
-      : system(std::move(system)), start(std::move(start)), options(options) {}
-
-  const std::shared_ptr<const System> system;
-  const Points start;
-  RelaxationOptions options;
-
-  std::mutex mutex;  // guards what follows
-  std::condition_variable changed;
-  std::shared_ptr<const RelaxationResult> best;  // null before the first iteration
-  double fraction = 0;
-  RelaxationResult result;  // once finished without a fault
-  bool finished = false;
-  bool abandoned = false;
-  std::exception_ptr fault;
-
-  void run(Relaxer& relaxer) {
-    options.go_on = [this](const RelaxationProgress& progress) {
-      auto copy = std::make_shared<const RelaxationResult>(progress.best);
-      const std::lock_guard<std::mutex> lock(mutex);
-      best.swap(copy);
-      fraction = progress.fraction;
-      return !abandoned;
-    };
-    RelaxationResult found;
-    std::exception_ptr thrown;
-    try {
-      found = relaxer.relax(*system, start, options);
-    } catch (...) {
-      thrown = std::current_exception();
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    result = std::move(found);
-    fault = thrown;
-    finished = true;
-    changed.notify_all();
-  }
-
-  bool isFinished() {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return finished;
-  }
-
-  void abandon() {
-    const std::lock_guard<std::mutex> lock(mutex);
-    abandoned = true;
-  }
-
-  /// The answer of a relaxation that was cancelled when it had come to `reached`; null: nowhere.
-  RelaxationResult cancelled(const std::shared_ptr<const RelaxationResult>& reached) const {
-    RelaxationResult answer = reached ? *reached : unrelaxed(*system, start);
-    const TorqueLimit limit(*system, options.tolerance);
-    turnBack(*system, start, areWithin(*system, start, limit), answer);
-    answer.message = "cancelled; largest torque " + toText(answer.max_torque) + " N m";
-    return answer;
-  }
-};
-
-Runner::~Runner() {
-  if (worker_.joinable()) worker_.join();
-}
-
-std::shared_ptr<Runner::Work> Runner::beginning(const RelaxationOptions& options) {
-  const Lock lock(mutex_);
-  return std::make_shared<Work>(simulation_.plan()->system(), simulation_.state().positions,
-                                options);
-}
-
-/// Waits for the worker of a relaxation that was cancelled, which may be in the middle of an
-/// iteration.
-/// @return false where this relaxation is cancelled first.
-bool Runner::awaitLastWorker() {
-  if (!worker_.joinable()) return true;
-  {
-    std::unique_lock<std::mutex> lock(last_work_->mutex);
-    while (!last_work_->finished && !cancelled_) last_work_->changed.wait_for(lock, kShowEvery);
-    if (!last_work_->finished) return false;
-  }
-  worker_.join();
-  last_work_.reset();
-  return true;
-}
-
-/// To be called while no relaxation is under way; one that was cancelled may still have its worker.
-void Runner::forgetRelaxations() {
-  if (!worker_.joinable()) relaxer_.forget();
-}
-
 RelaxationResult Runner::relax(const RelaxationOptions& options) {
   requireValid(options);
   const Busy busy(*this, Activity::relaxing);
-  const auto work = beginning(options);
-  RelaxationResult result;
-  if (awaitLastWorker()) {
-    last_work_ = work;
-    worker_ = std::thread([this, work] { work->run(relaxer_); });
-    try {
-      result = await(*work);
-    } catch (...) {
-      work->abandon();
-      throw;
-    }
-    if (work->isFinished()) awaitLastWorker();
-  } else {
-    result = work->cancelled(nullptr);
-  }
+  auto [system, start] = read([](Simulation& simulation) {
+    return std::pair(simulation.plan()->system(), simulation.state().positions);
+  });
+  RelaxationResult result = relaxations_.relax(std::move(system), std::move(start), options,
+                                               [this](const auto& best, double fraction) {
+                                                 show(best, fraction);
+                                                 return !cancelled_;
+                                               });
   settle(result.positions);
   return result;
-}
-
-RelaxationResult Runner::await(Work& work) {
-  std::unique_lock<std::mutex> lock(work.mutex);
-  while (!work.finished && !cancelled_) {
-    work.changed.wait_for(lock, kShowEvery);
-    show(work.best, work.fraction);
-  }
-  if (work.fault) std::rethrow_exception(work.fault);
-  if (work.finished) return std::move(work.result);
-  work.abandoned = true;
-  const auto reached = work.best;
-  lock.unlock();
-  return work.cancelled(reached);
 }
 
 void Runner::show(const std::shared_ptr<const RelaxationResult>& best, double fraction) {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
+#include "simulation/cancellable_relaxer.h"
 #include "spherical_springs/relaxation.h"
 #include "spherical_springs/simulation.h"
 
@@ -52,7 +52,6 @@ class Runner {
  public:
   Runner(const Simulation::Settings& settings, bool running)
       : simulation_(settings), running_(running) {}
-  ~Runner();
 
   /// `use(simulation)` for one that only looks; returns what it returns.
   template <class Use>
@@ -134,7 +133,6 @@ class Runner {
 
  private:
   class Busy;
-  struct Work;
 
   /// Lets go of what is prepared for further relaxations if a change alters the topology.
   class TopologyWatch {
@@ -142,7 +140,7 @@ class Runner {
     explicit TopologyWatch(Runner& runner)
         : runner_(runner), topology_(runner.simulation_.topology()) {}
     ~TopologyWatch() {
-      if (runner_.simulation_.topology() != topology_) runner_.forgetRelaxations();
+      if (runner_.simulation_.topology() != topology_) runner_.relaxations_.forget();
     }
     TopologyWatch(const TopologyWatch&) = delete;
     TopologyWatch& operator=(const TopologyWatch&) = delete;
@@ -154,10 +152,6 @@ class Runner {
 
   void requireIdle() const;
   Activity activity() const;
-  std::shared_ptr<Work> beginning(const RelaxationOptions& options);
-  bool awaitLastWorker();
-  void forgetRelaxations();
-  RelaxationResult await(Work& work);
   void show(const std::shared_ptr<const RelaxationResult>& best, double fraction);
   void settle(const Points& positions);
   std::uint64_t stepForASlice(std::uint64_t most);
@@ -179,11 +173,8 @@ class Runner {
 
   std::atomic<bool> cancelled_{false};  // set under control_
 
-  // Used by the one caller whose relaxation is under way, and by its worker; and by changes while
-  // there is neither.
-  Relaxer relaxer_;
-  std::shared_ptr<Work> last_work_;
-  std::thread worker_;
+  // Used by the one caller whose relaxation is under way, and by changes while there is none.
+  CancellableRelaxer relaxations_;
 };
 
 }  // namespace spherical_springs::core

@@ -35,7 +35,7 @@ struct Matrix {
   const BlockPattern& pattern() const { return energy.pattern(); }
   Eigen::Index size() const { return static_cast<Eigen::Index>(2 * pattern().rows()); }
   Multigrid<Real> multigrid(int threads = 1) const {
-    return Multigrid<Real>(pattern(), values, energy.rotations<Real>(), threads);
+    return Multigrid<Real>(pattern(), values, energy.places().rotations<Real>(), threads);
   }
 };
 

@@ -44,7 +44,7 @@ TEST(TangentEnergy, ValueAndTorqueAreThoseOfTheSystem) {
       const double expected = system.potential(positions).total();
       EXPECT_NEAR(energy.energy(), expected, 1e-13 * expected);
       EXPECT_EQ(energy.unit(0), system.largestStiffness());
-      EXPECT_EQ(energy.positions(), positions);
+      EXPECT_EQ(energy.places().positions(), positions);
       System::Workspace workspace;
       system.evaluate(positions, workspace);
       double torque = 0;
@@ -127,7 +127,7 @@ TEST(TangentEnergy, MovesAlongTheSphereAndBack) {
   const Eigen::VectorXd gradient = energy.gradient();
   energy.mark();
   energy.move(Eigen::VectorXd::Constant(gradient.size(), 0.3));
-  const Points moved = energy.positions();
+  const Points moved = energy.places().positions();
   EXPECT_LT((moved.colwise().norm().array() - 1).abs().maxCoeff(), 1e-15);
   for (Eigen::Index i = 0; i < start.cols(); ++i) {
     // The tangent vector has the length 0.3 sqrt(2); the way back is along the radius.
@@ -136,7 +136,7 @@ TEST(TangentEnergy, MovesAlongTheSphereAndBack) {
   }
   energy.goBack();
   energy.evaluate(Curvature::exact);
-  EXPECT_EQ(energy.positions(), start);
+  EXPECT_EQ(energy.places().positions(), start);
   EXPECT_EQ(energy.gradient(), gradient);
 }
 
@@ -250,7 +250,7 @@ TEST(TangentEnergy, IsTheSameToTheLastBitOnAnyNumberOfThreads) {
     for (const int threads : {2, 3}) {
       const auto energy = evaluated(threads, curvature);
       EXPECT_EQ(energy.value(), expected.value());
-      EXPECT_EQ(energy.positions(), expected.positions());
+      EXPECT_EQ(energy.places().positions(), expected.places().positions());
       EXPECT_TRUE(energy.gradient() == expected.gradient());
       EXPECT_TRUE(energy.hessian() == expected.hessian());
       EXPECT_EQ(energy.expectedDrop(energy.gradient()), expected.expectedDrop(expected.gradient()));
