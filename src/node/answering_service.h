@@ -11,6 +11,7 @@
 
 #include "node/answer.h"
 #include "node/faults.h"
+#include "node/refusals.h"
 #include "node/request_stream.h"
 
 namespace spherical_springs {
@@ -24,10 +25,11 @@ class AnsweringService : public ros::ServiceCallbackHelper {
   /// Fills the response or throws.
   using Handle = std::function<void(const typename Service::Request&, Answer<Service>&)>;
 
-  /// A request that breaks `limits` does not come to `handle`.
-  AnsweringService(const core::SceneLimits& limits, Handle handle)
+  /// A request that breaks `limits` does not come to `handle`. `refusals` must live longer.
+  AnsweringService(const core::SceneLimits& limits, Handle handle, Refusals& refusals)
       : limits_(limits),
         handle_(std::move(handle)),
+        refusals_(refusals),
         out_of_memory_(refusalThatMayFail(reasonOf(std::bad_alloc()))) {}
 
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
@@ -35,6 +37,7 @@ class AnsweringService : public ros::ServiceCallbackHelper {
       params.response = answer(params.request);
     } catch (const std::exception& fault) {
       params.response = refusal(reasonOf(fault));
+      refusals_.tell(fault);
     } catch (...) {
       params.response = refusal("the reason is unknown");
     }
@@ -65,6 +68,7 @@ class AnsweringService : public ros::ServiceCallbackHelper {
 
   const core::SceneLimits limits_;
   const Handle handle_;
+  Refusals& refusals_;
   const ros::SerializedMessage out_of_memory_;  // made while there is memory
 };
 
@@ -72,10 +76,12 @@ class AnsweringService : public ros::ServiceCallbackHelper {
 template <class Service>
 ros::ServiceServer advertiseAnswering(ros::NodeHandle& node, const std::string& name,
                                       const core::SceneLimits& limits,
-                                      typename AnsweringService<Service>::Handle handle) {
+                                      typename AnsweringService<Service>::Handle handle,
+                                      Refusals& refusals) {
   ros::AdvertiseServiceOptions options;
   options.init<Service>(name, {});
-  options.helper = boost::make_shared<AnsweringService<Service>>(limits, std::move(handle));
+  options.helper =
+      boost::make_shared<AnsweringService<Service>>(limits, std::move(handle), refusals);
   return node.advertiseService(options);
 }
 

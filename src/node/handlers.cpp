@@ -186,7 +186,8 @@ std::uint32_t stepsIn(const Step::Request& request, double time_step) {
 
 }  // namespace
 
-void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
+void Handlers::step(const Step::Request& request, Answer<Step>& answer,
+                    core::StepFollower* follower) {
   const auto begin = Clock::now();
   auto& response = answer.response;
   response.energies.header.frame_id = frame_id_;
@@ -212,7 +213,7 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
     return;
   }
   const StatusChange told_at_the_end(news_);
-  const std::uint64_t done = runner_.step(count, report);
+  const std::uint64_t done = runner_.step(count, report, follower);
   response.steps = static_cast<std::uint32_t>(done);
   response.message = done == steps ? "did " : "cancelled after ";
   appendCount(done, "step", response.message);
@@ -221,7 +222,8 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer) {
   append(steps, response.message);
 }
 
-void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer) {
+void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
+                     core::RelaxFollower* follower) {
   const auto begin = Clock::now();
   auto& response = answer.response;
   core::RelaxationOptions options;
@@ -231,7 +233,7 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer) {
   options.keep_orientation = request.keep_orientation;
   answer.reserve(kMessageRoom);
   news_.statusChanged();
-  const auto result = runner_.relax(options);
+  const auto result = runner_.relax(options, follower);
   response.converged = result.converged;
   response.iterations = result.iterations;
   response.wall_time = secondsSince(begin);

@@ -26,7 +26,7 @@ namespace spherical_springs {
 
 /// One function a service, for many threads. Each fills the response or throws; one that throws has
 /// changed nothing. That is why answers are reserved before the change, and why nothing after it
-/// takes memory.
+/// takes memory. A follower, of a call that may take long, is null for none.
 class Handlers {
  public:
   /// The arguments must live longer. `frame_id`: that of energies.
@@ -46,8 +46,12 @@ class Handlers {
   void clear(const std_srvs::Trigger::Request& request, Answer<std_srvs::Trigger>& answer);
   void reset(const std_srvs::Trigger::Request& request, Answer<std_srvs::Trigger>& answer);
   void setRunning(const std_srvs::SetBool::Request& request, Answer<std_srvs::SetBool>& answer);
-  void step(const Step::Request& request, Answer<Step>& answer);
-  void relax(const Relax::Request& request, Answer<Relax>& answer);
+  void step(const Step::Request& request, Answer<Step>& answer) { step(request, answer, nullptr); }
+  void step(const Step::Request& request, Answer<Step>& answer, core::StepFollower* follower);
+  void relax(const Relax::Request& request, Answer<Relax>& answer) {
+    relax(request, answer, nullptr);
+  }
+  void relax(const Relax::Request& request, Answer<Relax>& answer, core::RelaxFollower* follower);
   void cancel(const std_srvs::Trigger::Request& request, Answer<std_srvs::Trigger>& answer);
 
  private:

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "node/actions.h"
 #include "node/callback_threads.h"
 #include "node/faults.h"
 #include "node/handlers.h"
@@ -28,8 +29,7 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
                     core::Runner& runner) {
   if (parameters.scene.empty()) return;
   try {
-    auto file =
-        core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
+    auto file = core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
     runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
   } catch (const std::exception& fault) {
     throw std::invalid_argument("parameter ~scene is " + core::quoted(parameters.scene) +
@@ -38,8 +38,9 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
 }
 
 // Who runs what, beside the threads of ROS itself, which read requests and send what is published:
-//   calls       eight threads, one for each service call under way, long ones too
+//   calls       eight threads, one for each service call or goal under way, long ones too
 //   cancelling, pausing   ~cancel and ~set_running, which long calls must not hold up
+//   receiving   goals of actions, which it hands to calls, and their cancels
 //   ticking     the clock's ticks, which it hands to the thread of Stepper, which steps
 //   sampling    ~poses and ~energies
 //   reporting   ~status and /diagnostics
@@ -48,8 +49,8 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
 // A relaxation has a thread of its own, for which the caller waits (Runner); loops over many
 // springs are shared among threads of the core.
 struct Threads {
-  CallbackThreads calls{8}, cancelling{1}, pausing{1}, ticking{1}, sampling{1}, reporting{1},
-      drawing{1}, reconfiguring{1};
+  CallbackThreads calls{8}, cancelling{1}, pausing{1}, receiving{1}, ticking{1}, sampling{1},
+      reporting{1}, drawing{1}, reconfiguring{1};
 
   void start() {
     for (CallbackThreads* threads : all()) threads->start();
@@ -59,8 +60,8 @@ struct Threads {
   }
 
  private:
-  std::array<CallbackThreads*, 8> all() {
-    return {&calls,    &cancelling, &pausing, &ticking,
+  std::array<CallbackThreads*, 9> all() {
+    return {&calls,    &cancelling, &pausing, &receiving,    &ticking,
             &sampling, &reporting,  &drawing, &reconfiguring};
   }
 };
@@ -82,6 +83,7 @@ void run() {
   MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
   const Services services(threads.calls.handle(node), threads.cancelling.handle(node),
                           threads.pausing.handle(node), handlers, news, limits);
+  const Actions actions(threads.receiving.handle(node), threads.calls.queue(), handlers, news);
   Stepper stepper(threads.ticking.handle(node), runner, parameters);
   const Reconfiguration reconfiguration(threads.reconfiguring.handle(node), runner, news, stepper,
                                         publisher, markers, parameters);

@@ -1,21 +1,13 @@
 #include "node/services.h"
 
 #include "node/answering_service.h"
-#include "spherical_springs/range.h"
 
 namespace spherical_springs {
 
 template <class Service, class Handle>
 void Services::advertiseAny(ros::NodeHandle& node, const std::string& name, const Handle& handle) {
-  servers_.push_back(advertiseAnswering<Service>(node, name, limits_,
-                                                 [this, handle](const auto& request, auto& answer) {
-                                                   try {
-                                                     handle(request, answer);
-                                                   } catch (const core::NonFinite& fault) {
-                                                     news_.refused(fault.what());
-                                                     throw;
-                                                   }
-                                                 }));
+  refusals_.emplace_back(name, news_);
+  servers_.push_back(advertiseAnswering<Service>(node, name, limits_, handle, refusals_.back()));
 }
 
 template <class Service>

@@ -3,11 +3,13 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "node/handlers.h"
 #include "node/news.h"
+#include "node/refusals.h"
 
 namespace spherical_springs {
 
@@ -37,6 +39,7 @@ class Services {
   Handlers& handlers_;
   News& news_;
   const core::SceneLimits limits_;
+  std::deque<Refusals> refusals_;  // one a service, which refers to it
   std::vector<ros::ServiceServer> servers_;
 };
 

@@ -57,11 +57,16 @@ struct CancellableRelaxer::Work {
   }
 
   /// Waits until it has finished.
-  /// @return false where `watch` cancels first.
-  bool await(std::unique_lock<std::mutex>& lock, const Watch& watch) {
+  /// @return false where `watch`, which may take its time, cancels first.
+  bool await(const Watch& watch) {
+    std::unique_lock<std::mutex> lock(mutex);
     while (!finished) {
-      if (!watch(best, fraction)) return false;
-      changed.wait_for(lock, kWatchEvery);
+      const auto reached = best;
+      const double reached_fraction = fraction;
+      lock.unlock();
+      if (!watch(reached, reached_fraction)) return false;
+      lock.lock();
+      if (!finished) changed.wait_for(lock, kWatchEvery);
     }
     return true;
   }
@@ -94,11 +99,7 @@ CancellableRelaxer::~CancellableRelaxer() {
 /// @return false where `watch` cancels first.
 bool CancellableRelaxer::awaitLast(const Watch& watch) {
   if (!thread_.joinable()) return true;
-  {
-    std::unique_lock<std::mutex> lock(last_->mutex);
-    const auto waiting = [&](const auto&, double) { return watch(nullptr, 0); };
-    if (!last_->await(lock, waiting)) return false;
-  }
+  if (!last_->await([&](const auto&, double) { return watch(nullptr, 0); })) return false;
   thread_.join();
   last_.reset();
   return true;
@@ -108,33 +109,34 @@ void CancellableRelaxer::forget() {
   if (!thread_.joinable()) relaxer_.forget();
 }
 
-RelaxationResult CancellableRelaxer::relax(std::shared_ptr<const System> system, Points start,
-                                           const RelaxationOptions& options, const Watch& watch) {
+CancellableRelaxer::Outcome CancellableRelaxer::relax(std::shared_ptr<const System> system,
+                                                      Points start,
+                                                      const RelaxationOptions& options,
+                                                      const Watch& watch) {
   const auto work = std::make_shared<Work>(std::move(system), std::move(start), options);
-  if (!awaitLast(watch)) return work->cancelled(nullptr);
+  if (!awaitLast(watch)) return {work->cancelled(nullptr), true};
   last_ = work;
   thread_ = std::thread([this, work] { work->run(relaxer_); });
-  RelaxationResult result;
+  Outcome outcome;
   try {
-    result = await(*work, watch);
+    outcome = await(*work, watch);
   } catch (...) {
     work->abandon();
     throw;
   }
   if (work->isFinished()) awaitLast(watch);
-  return result;
+  return outcome;
 }
 
-RelaxationResult CancellableRelaxer::await(Work& work, const Watch& watch) {
+CancellableRelaxer::Outcome CancellableRelaxer::await(Work& work, const Watch& watch) {
+  work.await(watch);
   std::unique_lock<std::mutex> lock(work.mutex);
-  if (work.await(lock, watch)) {
-    if (work.fault) std::rethrow_exception(work.fault);
-    return std::move(work.result);
-  }
+  if (work.fault) std::rethrow_exception(work.fault);
+  if (work.finished) return {std::move(work.result), false};
   work.abandoned = true;
   const auto reached = work.best;
   lock.unlock();
-  return work.cancelled(reached);
+  return {work.cancelled(reached), true};
 }
 
 }  // namespace spherical_springs::core

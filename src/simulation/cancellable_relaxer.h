@@ -18,6 +18,11 @@ class CancellableRelaxer {
   CancellableRelaxer(const CancellableRelaxer&) = delete;
   CancellableRelaxer& operator=(const CancellableRelaxer&) = delete;
 
+  struct Outcome {
+    RelaxationResult result;
+    bool cancelled;
+  };
+
   /// Called every 20 ms with the best so far, which is null before the first iteration, and the
   /// fraction of the way; returning false cancels.
   using Watch =
@@ -26,8 +31,8 @@ class CancellableRelaxer {
   /// Relaxes as `Relaxer::relax`, or ends with the best so far where it is cancelled. Waits for the
   /// thread of an earlier relaxation that was cancelled.
   /// @throw what `Relaxer::relax` throws.
-  RelaxationResult relax(std::shared_ptr<const System> system, Points start,
-                         const RelaxationOptions& options, const Watch& watch);
+  Outcome relax(std::shared_ptr<const System> system, Points start,
+                const RelaxationOptions& options, const Watch& watch);
 
   /// Lets go of what is prepared for further relaxations, unless the thread of one that was
   /// cancelled still uses it.
@@ -37,7 +42,7 @@ class CancellableRelaxer {
   struct Work;
 
   bool awaitLast(const Watch& watch);
-  static RelaxationResult await(Work& work, const Watch& watch);
+  static Outcome await(Work& work, const Watch& watch);
 
   Relaxer relaxer_;
   std::shared_ptr<Work> last_;

@@ -117,17 +117,33 @@ std::uint64_t Runner::advance(std::uint64_t steps, double time_step, double wall
   return done;
 }
 
-std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& report) {
+/// Lets the follower of the work under way cancel it.
+template <class Progress>
+void Runner::ask(Follower<Progress>* follower, const Progress& progress) {
+  if (follower != nullptr && !follower->goesOn(progress)) cancel();
+}
+
+std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& report,
+                           StepFollower* follower) {
   const Busy busy(*this, Activity::stepping);
   const std::uint64_t steps = read(count);
+  const double time_step = read([](const Simulation& s) { return s.settings().time_step; });
   State before = read([](const Simulation& s) { return s.state(); });
   std::uint64_t done = 0;
+  const auto askFollower = [&] {
+    ask(follower, {done, before.time + static_cast<double>(done) * time_step});
+  };
   try {
+    askFollower();
     while (done < steps && !cancelled_) {
-      const Lock lock(mutex_);
-      done += stepForASlice(steps - done);
+      {
+        const Lock lock(mutex_);
+        done += stepForASlice(steps - done);
+      }
+      askFollower();
     }
     if (done < steps) {
+      if (follower != nullptr) follower->cancelled();
       const Lock lock(mutex_);
       simulation_.settle(Points(simulation_.state().positions));
     }
@@ -140,19 +156,23 @@ std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& 
   return done;
 }
 
-RelaxationResult Runner::relax(const RelaxationOptions& options) {
+RelaxationResult Runner::relax(const RelaxationOptions& options, RelaxFollower* follower) {
   requireValid(options);
   const Busy busy(*this, Activity::relaxing);
+  ask(follower, {nullptr, 0});
   auto [system, start] = read([](Simulation& simulation) {
     return std::pair(simulation.plan()->system(), simulation.state().positions);
   });
-  RelaxationResult result = relaxations_.relax(std::move(system), std::move(start), options,
-                                               [this](const auto& best, double fraction) {
-                                                 show(best, fraction);
-                                                 return !cancelled_;
-                                               });
+  const auto watch = [&](const std::shared_ptr<const RelaxationResult>& best, double fraction) {
+    show(best, fraction);
+    ask(follower, {best.get(), fraction});
+    return !cancelled_;
+  };
+  auto [result, cancelled] =
+      relaxations_.relax(std::move(system), std::move(start), options, watch);
+  if (cancelled && follower != nullptr) follower->cancelled();
   settle(result.positions);
-  return result;
+  return std::move(result);
 }
 
 void Runner::show(const std::shared_ptr<const RelaxationResult>& best, double fraction) {

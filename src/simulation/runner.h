@@ -44,6 +44,35 @@ class Refusal : public std::runtime_error {
   Reason reason_;
 };
 
+/// Follows a step or relaxation on the thread of its caller, and may cancel it.
+template <class Progress>
+class Follower {
+ public:
+  virtual ~Follower() = default;
+
+  /// Called when the work begins, as it is not refused any more, and then every few milliseconds.
+  /// @return false to cancel the work.
+  virtual bool goesOn(const Progress& progress) noexcept = 0;
+
+  /// Called where the work has been cancelled, by `goesOn` or by another caller.
+  virtual void cancelled() noexcept = 0;
+};
+
+/// How far a step under way has come.
+struct StepProgress {
+  std::uint64_t steps;  ///< that are done
+  double time;          ///< simulated [s]
+};
+
+/// How far a relaxation under way has come.
+struct RelaxProgress {
+  const RelaxationResult* best;  ///< what it would be if it ended now; null before an iteration
+  double fraction;               ///< of the way, as RelaxationProgress has it
+};
+
+using StepFollower = Follower<StepProgress>;
+using RelaxFollower = Follower<RelaxProgress>;
+
 /// Steps and relaxes a simulation, and lets others read it meanwhile: stepping pauses for them
 /// every few milliseconds; a relaxation works on a copy, on a thread of its own, and shows how far
 /// it has come. Changes are refused until either ends. All functions may be called from any thread.
@@ -91,10 +120,11 @@ class Runner {
   using StepCount = std::function<std::uint64_t(const Simulation&)>;
 
   /// Exactly as many steps as `count` says, unless cancelled; then `report()`, while changes are
-  /// still refused. Where that throws, the steps are undone.
+  /// still refused. Where that throws, the steps are undone. `follower`: null for none.
   /// @return how many were done. @throw Refusal unless paused and idle, and what `count` and
   /// `report` throw.
-  std::uint64_t step(const StepCount& count, const std::function<void()>& report);
+  std::uint64_t step(const StepCount& count, const std::function<void()>& report,
+                     StepFollower* follower = nullptr);
   std::uint64_t step(std::uint64_t steps, const std::function<void()>& report) {
     return step([steps](const Simulation&) { return steps; }, report);
   }
@@ -102,8 +132,9 @@ class Runner {
     return step(steps, [] {});
   }
 
+  /// `follower`: null for none.
   /// @throw Refusal while another is under way, std::invalid_argument for bad options.
-  RelaxationResult relax(const RelaxationOptions& options);
+  RelaxationResult relax(const RelaxationOptions& options, RelaxFollower* follower = nullptr);
 
   /// Ends a step or relaxation under way at its best state so far, at rest. Never waits for it, nor
   /// for a change of the scene.
@@ -152,6 +183,8 @@ class Runner {
 
   void requireIdle() const;
   Activity activity() const;
+  template <class Progress>
+  void ask(Follower<Progress>* follower, const Progress& progress);
   void show(const std::shared_ptr<const RelaxationResult>& best, double fraction);
   void settle(const Points& positions);
   std::uint64_t stepForASlice(std::uint64_t most);

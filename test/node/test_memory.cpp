@@ -89,8 +89,13 @@ template <class Service>
 class Client {
  public:
   Client(Node& node, Handler<Service> handle, const typename Service::Request& request)
-      : service_({}, [&node, handle](const auto& request,
-                                     auto& answer) { (node.handlers.*handle)(request, answer); }),
+      : refusals_("a service", node.news),
+        service_(
+            {},
+            [&node, handle](const auto& request, auto& answer) {
+              (node.handlers.*handle)(request, answer);
+            },
+            refusals_),
         request_(bytesOf(request)) {}
 
   typename Service::Response call() {
@@ -134,6 +139,7 @@ class Client {
     return response;
   }
 
+  Refusals refusals_;
   AnsweringService<Service> service_;
   const ros::SerializedMessage request_;
 };
