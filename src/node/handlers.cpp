@@ -214,6 +214,7 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer,
   }
   const StatusChange told_at_the_end(news_);
   const std::uint64_t done = runner_.step(count, report, follower);
+  news_.sceneChanged();
   response.steps = static_cast<std::uint32_t>(done);
   response.message = done == steps ? "did " : "cancelled after ";
   appendCount(done, "step", response.message);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -22,6 +23,12 @@ class News {
 
   /// Whether the status has changed since this was asked last.
   bool takeStatusChange() noexcept { return status_changed_.exchange(false); }
+
+  /// A change, a step or a relaxation is done: samples are to be published once more.
+  void sceneChanged() noexcept { ++scene_changes_; }
+
+  /// How often `sceneChanged` has been told.
+  std::uint64_t sceneChanges() const noexcept { return scene_changes_; }
 
   /// "`subject` `what`" is the last thing worth telling a person; the status has changed.
   void tell(std::string_view what, std::string_view subject = "") noexcept;
@@ -46,6 +53,7 @@ class News {
   using Clock = std::chrono::steady_clock;
 
   std::atomic<bool> status_changed_{true};
+  std::atomic<std::uint64_t> scene_changes_{0};
 
   mutable std::mutex mutex_;  // guards what follows
   std::string message_, refusal_, relaxation_fault_;

@@ -24,17 +24,19 @@ std::string messageOf(const Report& report) {
 
 }  // namespace
 
-// Samples follow the clock of ROS, as stepping does. The status follows the wall, so that it can be
-// read while the clock stands still.
+// Samples follow the clock of ROS, as stepping does. The status follows a clock that never stands,
+// nor goes back when somebody sets the time; so does a sample after a change, which the clock of
+// ROS has not brought.
 Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::Runner& runner,
                      News& news, const Parameters& parameters)
     : parameters_(parameters),
       runner_(runner),
       news_(news),
       expected_factor_(parameters.real_time_factor),
+      sample_period_(1 / parameters.publish_rate),
       diagnostics_(reporting),
       real_time_monitor_(parameters.real_time_factor, parameters.time_step) {
-  constexpr double kStatusCheck = 0.05;  // [s]
+  const ros::WallDuration kCheck(0.05);  // [s]
   const auto on_listener = [this](const ros::SingleSubscriberPublisher&) { news_.statusChanged(); };
   poses_ = sampling.advertise<geometry_msgs::PoseArray>("poses", 1);
   energies_ = sampling.advertise<Energies>("energies", 100);
@@ -43,17 +45,23 @@ Publisher::Publisher(ros::NodeHandle sampling, ros::NodeHandle reporting, core::
   sample_timer_ = sampling.createTimer(
       ros::Duration(1 / parameters_.publish_rate),
       loggingFaults("a sample of ~poses and ~energies is left out", [this] { publishSample(); }));
-  status_timer_ = reporting.createWallTimer(
-      ros::WallDuration(kStatusCheck),
-      loggingFaults("~status comes later", [this] { publishStatusIfDue(); }));
+  missing_sample_timer_ = sampling.createSteadyTimer(
+      kCheck,
+      loggingFaults("a sample after a change comes later", [this] { publishSampleIfMissing(); }));
+  status_timer_ = reporting.createSteadyTimer(
+      kCheck, loggingFaults("~status comes later", [this] { publishStatusIfDue(); }));
 }
 
-void Publisher::setRate(double rate) { sample_timer_.setPeriod(ros::Duration(1 / rate)); }
+void Publisher::setRate(double rate) {
+  sample_period_ = 1 / rate;
+  sample_timer_.setPeriod(ros::Duration(1 / rate));
+}
 
 void Publisher::publishSample() {
   const bool to_poses = poses_.getNumSubscribers() > 0;
   const bool to_energies = energies_.getNumSubscribers() > 0;
   if (!to_poses && !to_energies) return;
+  const std::uint64_t changes = news_.sceneChanges();
   const auto snapshot = runner_.snapshot();
   const ros::Time stamp = ros::Time::now();
   if (to_poses) {
@@ -67,6 +75,14 @@ void Publisher::publishSample() {
     message.header.stamp = stamp;
     energies_.publish(message);
   }
+  sampled_changes_ = changes;
+  last_sample_ = Clock::now();
+}
+
+void Publisher::publishSampleIfMissing() {
+  const std::chrono::duration<double> since_last = Clock::now() - last_sample_;
+  if (sampled_changes_ == news_.sceneChanges() || since_last.count() < sample_period_) return;
+  publishSample();
 }
 
 void Publisher::publishStatusIfDue() {

@@ -3,12 +3,13 @@
 
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/steady_timer.h>
 #include <ros/timer.h>
-#include <ros/wall_timer.h>
 #include <spherical_springs/Energies.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "node/diagnostics.h"
@@ -40,6 +41,7 @@ class Publisher {
   using Clock = std::chrono::steady_clock;
 
   void publishSample();
+  void publishSampleIfMissing();
   void publishStatusIfDue();
   Report report(const core::Runner::Snapshot& snapshot);
   double realTimeFactor(double stepped_time);
@@ -51,6 +53,11 @@ class Publisher {
   core::Runner& runner_;
   News& news_;
   std::atomic<double> expected_factor_;
+  std::atomic<double> sample_period_;  // [s]
+
+  // Used by the callbacks of `sampling` alone.
+  Clock::time_point last_sample_ = Clock::now();
+  std::uint64_t sampled_changes_ = 0;
 
   // Used by the status timer alone.
   Diagnostics diagnostics_;
@@ -63,7 +70,7 @@ class Publisher {
   // Last, so that their callbacks end before what these use.
   ros::Publisher poses_, energies_, status_;
   ros::Timer sample_timer_;
-  ros::WallTimer status_timer_;
+  ros::SteadyTimer missing_sample_timer_, status_timer_;
 };
 
 }  // namespace spherical_springs

@@ -58,7 +58,7 @@ Reconfiguration::Reconfiguration(const ros::NodeHandle& node, core::Runner& runn
   descriptions_.publish(SteppingConfig::__getDescriptionMessage__());
   show();
   service_ = node_.advertiseService("set_parameters", &Reconfiguration::reconfigure, this);
-  timer_ = node_.createWallTimer(
+  timer_ = node_.createSteadyTimer(
       ros::WallDuration(kCheck),
       loggingFaults("dynamic_reconfigure shows changes later", [this] { showChanges(); }));
 }

@@ -4,7 +4,7 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
-#include <ros/wall_timer.h>
+#include <ros/steady_timer.h>
 #include <spherical_springs/SteppingConfig.h>
 
 #include <exception>
@@ -54,7 +54,7 @@ class Reconfiguration {
   // Last, so that their callbacks end before what these use.
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 }  // namespace spherical_springs

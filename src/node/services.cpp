@@ -23,6 +23,7 @@ void Services::advertise(ros::NodeHandle& node, const std::string& name, Handler
   advertiseAny<Service>(node, name, [this, handle](const auto& request, auto& answer) {
     const StatusChange told_at_the_end(news_);
     (handlers_.*handle)(request, answer);
+    news_.sceneChanged();
   });
 }
 
@@ -41,6 +42,7 @@ Services::Services(ros::NodeHandle node, ros::NodeHandle cancelling, ros::NodeHa
   advertise<std_srvs::Trigger>(node, "clear", &Handlers::clear);
   advertise<std_srvs::Trigger>(node, "reset", &Handlers::reset);
   advertise<std_srvs::SetBool>(pausing, "set_running", &Handlers::setRunning);
+  // Without steps it only reports; it tells of those that it does itself.
   advertiseReader<Step>(node, "step", &Handlers::step);
   advertise<Relax>(node, "relax", &Handlers::relax);
   advertise<std_srvs::Trigger>(cancelling, "cancel", &Handlers::cancel);

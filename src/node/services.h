@@ -29,7 +29,8 @@ class Services {
   template <class Service>
   void advertiseReader(ros::NodeHandle& node, const std::string& name, Handler<Service> handle);
 
-  /// A service after whose calls, refused ones too, the status is published.
+  /// A service after whose calls, refused ones too, the status is published, and samples after
+  /// those that succeed.
   template <class Service>
   void advertise(ros::NodeHandle& node, const std::string& name, Handler<Service> handle);
 

@@ -5,14 +5,17 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy as np
 import rosbag
 import rospy
+from geometry_msgs.msg import PoseArray
 from rosgraph_msgs.msg import Clock
 from spherical_springs.msg import Energies, Status
 from std_msgs.msg import String
+from visualization_msgs.msg import MarkerArray
 
 from node_client import LONG, NodeProcess
-from scenes import add_random_scene, exact
+from scenes import add_octant, add_random_scene, exact, positions, vector
 
 
 class ClockTest(unittest.TestCase):
@@ -112,6 +115,38 @@ class TestClock(ClockTest):
             self.let_pass(0.3)
             stamps = [s.header.stamp.to_sec() for s in samples.several(2)]
         self.assertTrue(all(100 <= stamp <= self.clock for stamp in stamps), stamps)
+
+
+class TestStandingClock(ClockTest):
+    """Whoever listens sees what a change has come to, though no time goes by."""
+
+    def assert_samples_follow_changes(self):
+        node = self.node
+        node.set_running(False)
+        add_octant(node, damping=0)
+        with node.listen('poses', PoseArray) as poses, \
+                node.listen('energies', Energies) as energies, \
+                node.listen('markers', MarkerArray) as markers:
+            for change in (lambda: node.step(steps=100), node.reset, node.relax):
+                change()
+                places = positions(node.get_scene())
+                total = node.step(steps=0).energies.total
+                poses.first(lambda sample: np.array_equal(
+                    places, [vector(pose.position) for pose in sample.poses]))
+                energies.first(lambda sample: sample.total == total)
+                markers.first(lambda array: any(np.array_equal(
+                    places, [vector(p) for p in marker.points]) for marker in array.markers))
+
+    def test_a_clock_that_has_not_begun(self):
+        self.assert_samples_follow_changes()
+
+    def test_a_clock_that_has_stopped(self):
+        clock = rospy.Publisher('/clock', Clock, queue_size=10, latch=True)
+        self.addCleanup(clock.unregister)
+        clock.publish(Clock(rospy.Time(7)))
+        with self.node.listen('status', Status) as statuses:
+            statuses.first(lambda status: status.header.stamp == rospy.Time(7))
+        self.assert_samples_follow_changes()
 
 
 class TestReplay(ClockTest):
