@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "node/chosen_fields.h"
 #include "node/conversion.h"
 #include "node/kinds.h"
 #include "spherical_springs/range.h"
@@ -53,10 +54,21 @@ void Handlers::addParticles(const AddParticles::Request& request, Answer<AddPart
 }
 
 void Handlers::setParticles(const SetParticles::Request& request, Answer<SetParticles>& answer) {
+  const ChosenFields chosen(request.fields);
+  chosen.requireAmong(particleFields(), "particles");
   auto particles = fromMessages(request.particles);
   answer.response.message = "set " + counted(request.ids.size(), "particle");
   answer.reserve();
-  runner_.change([&](core::Simulation& s) { s.setParticles(request.ids, std::move(particles)); });
+  runner_.change([&](core::Simulation& s) {
+    const auto present = [&](std::size_t index) {
+      core::Particle particle = s.scene().particles().item(index);
+      particle.position = s.state().positions.col(index);
+      particle.angular_velocity = s.state().angular_velocities.col(index);
+      return particle;
+    };
+    keepOthersOfAll(chosen, s.scene().particles(), request.ids, present, particles);
+    s.setParticles(request.ids, std::move(particles));
+  });
 }
 
 void Handlers::removeParticles(const RemoveParticles::Request& request,
@@ -84,11 +96,21 @@ void Handlers::addSprings(const AddSprings::Request& request, Answer<AddSprings>
 }
 
 void Handlers::setSprings(const SetSprings::Request& request, Answer<SetSprings>& answer) {
+  const ChosenFields chosen(request.fields);
+  requireSpringFields(chosen, request);
   auto springs = springsFrom(request);
   const auto ids = springIdsFrom(request);
   answer.response.message = "set " + counted(springCount(request), "spring");
   answer.reserve();
-  runner_.change([&](core::Simulation& s) { s.setSprings(ids, std::move(springs)); });
+  runner_.change([&](core::Simulation& s) {
+    core::forEachKind([&](auto kind) {
+      using Spring = typename decltype(kind)::type;
+      const auto& table = s.scene().springs<Spring>();
+      const auto present = [&](std::size_t index) { return table.item(index); };
+      keepOthersOfAll(chosen, table, ids.get<Spring>(), present, springs.get<Spring>());
+    });
+    s.setSprings(ids, std::move(springs));
+  });
 }
 
 void Handlers::removeSprings(const RemoveSprings::Request& request, Answer<RemoveSprings>& answer) {

@@ -43,7 +43,7 @@ class RequestStream : public ros::serialization::IStream {
  private:
   template <class Item>
   std::size_t most() const {
-    if constexpr (std::is_same_v<Item, std::uint32_t>) {
+    if constexpr (!ros::message_traits::IsMessage<Item>::value) {
       return std::numeric_limits<std::uint32_t>::max();
     } else {
       return std::is_same_v<Item, Particle> ? limits_.particles : limits_.springs;
@@ -53,7 +53,7 @@ class RequestStream : public ros::serialization::IStream {
   template <class Item>
   static void require(std::size_t count, std::size_t allowed, const char* why) {
     if (count <= allowed) return;
-    std::string items = "ids";
+    std::string items = std::is_same_v<Item, std::string> ? "fields" : "ids";
     if constexpr (ros::message_traits::IsMessage<Item>::value) {
       items = std::is_same_v<Item, Particle> ? "particles" : "springs";
     }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <spherical_springs/AddSprings.h>
+#include <spherical_springs/SetParticles.h>
 
 #include <random>
 #include <stdexcept>
@@ -65,6 +66,17 @@ TEST(RequestStream, RefusesMoreThanTheLimits) {
   core::SceneLimits limits;
   limits.springs = 2;
   EXPECT_THROW(read(message(), kLengthBytes, message().num_bytes, limits), std::invalid_argument);
+}
+
+TEST(RequestStream, TakesNamesOfFieldsWhateverTheLimits) {
+  core::SceneLimits limits;
+  limits.particles = limits.springs = 0;
+  SetParticles::Request request;
+  request.fields = {"position", "mass"};
+  const auto bytes = ros::serialization::serializeMessage(request);
+  ros::SerializedMessage whole(bytes.buf, bytes.num_bytes);
+  whole.message_start = bytes.message_start;
+  EXPECT_EQ(readRequest<SetParticles::Request>(whole, limits).fields, request.fields);
 }
 
 TEST(RequestStream, TakesNoMoreItemsThanBytesWhateverComes) {

@@ -75,8 +75,10 @@ class NodeClient:
 
     def _method(self, service, service_type):
         def call(*args, **fields):
+            # Those given by position are the first ones; rospy would want all of them.
+            fields.update(zip(service_type._request_class.__slots__, args))
             # Each call has a proxy of its own, as threads may not share one.
-            response = rospy.ServiceProxy(self.name + '/' + service, service_type)(*args, **fields)
+            response = rospy.ServiceProxy(self.name + '/' + service, service_type)(**fields)
             if not response.success:
                 raise Refused(response.message)
             return response
@@ -148,7 +150,7 @@ class NodeProcess:
         self._output = tempfile.TemporaryFile('w+')
         self._process = subprocess.Popen(
             command, stdout=self._output, stderr=subprocess.STDOUT,
-            env={**os.environ, **(environment or {})})
+            env={**os.environ, 'ROSCONSOLE_STDOUT_LINE_BUFFERED': '1', **(environment or {})})
 
     def __enter__(self):
         return self

@@ -1,6 +1,8 @@
 import numpy as np
+from geometry_msgs.msg import Point, Vector3
+from spherical_springs.msg import Particle
 
-from node_client import NodeProcess, NodeTest
+from node_client import NodeProcess, NodeTest, Refused
 from scenes import (
     add_octant, angle_spring, angular_velocities, exact, ids_of, oriented_angle_spring, particle,
     positions, solid_angle_spring)
@@ -94,6 +96,59 @@ class TestSetting(NodeTest):
         self.node.step(steps=1)
         speed = np.linalg.norm(angular_velocities(self.node.get_scene())[0])
         self.assertAlmostEqual(1e-3 * np.pi / 2 / 4, speed, delta=1e-12)
+
+
+class TestSettingSomeFields(NodeTest):
+    def setUp(self):
+        super().setUp()
+        self.ids = self.node.add_particles([
+            particle((1, 0, 0), (0, 0, 3), mass=4, damping=5),
+            particle((0, 1, 0), mass=6, pinned=True)]).ids
+        self.node.step(steps=100)
+        self.before = self.node.get_scene().particles
+
+    def set_fields(self, fields, **values):
+        self.node.set_particles(self.ids, [Particle(**values)] * 2, fields)
+        return self.node.get_scene().particles
+
+    def test_a_place_keeps_all_else(self):
+        for before, after in zip(self.before,
+                                 self.set_fields(['position'], position=Point(0, 0, 2))):
+            self.assertEqual((0, 0, 1), positions_of(after))
+            self.assertEqual((before.mass, before.damping, before.pinned),
+                             (after.mass, after.damping, after.pinned))
+
+    def test_each_field_alone_keeps_the_others_to_the_last_bit(self):
+        for field, value in (('mass', 9), ('damping', 0.5), ('pinned', True)):
+            expected = self.node.get_scene().particles
+            for one in expected:
+                setattr(one, field, value)
+            expected[-1].angular_velocity = Vector3()
+            if field == 'pinned':
+                expected[0].angular_velocity = Vector3()
+            self.assertEqual(exact(expected), exact(self.set_fields([field], **{field: value})))
+
+    def test_several_fields(self):
+        after = self.set_fields(['mass', 'angular_velocity'], mass=2,
+                                angular_velocity=Vector3(0, 0, 1))
+        self.assertEqual([2, 2], [one.mass for one in after])
+        self.assertAlmostEqual(1, after[0].angular_velocity.z, delta=1e-15)
+        self.assertEqual(5, after[0].damping)
+
+    def test_an_unknown_name_is_refused(self):
+        before = exact(self.node.get_scene())
+        for names, words in ((['postion'], r"fields\[0\] is 'postion'; allowed for particles: "
+                                           'position, angular_velocity, mass, damping, pinned'),
+                             (['mass', ''], r"fields\[1\] is ''; allowed"),
+                             (['stiffness'], 'allowed')):
+            with self.assertRaisesRegex(Refused, words):
+                self.set_fields(names)
+            self.assertEqual(before, exact(self.node.get_scene()))
+
+    def test_values_that_are_not_chosen_are_not_looked_at(self):
+        self.set_fields(['mass'], mass=1, damping=-1, position=Point(0, 0, 0))
+        with self.assertRaisesRegex(Refused, 'mass'):
+            self.set_fields(['mass'], mass=-1)
 
 
 class TestRemoving(NodeTest):

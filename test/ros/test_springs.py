@@ -1,6 +1,6 @@
 import math
 
-from node_client import NodeProcess, NodeTest
+from node_client import NodeProcess, NodeTest, Refused
 from scenes import (
     KINDS, OCTANT_CORNERS, angle_spring, exact, ids_of, oriented_angle_spring, particle, same_ids,
     solid_angle_spring, springs_of)
@@ -111,6 +111,37 @@ class TestSetting(SpringTest):
         scene = self.node.get_scene()
         self.assertEqual(ids, ids_of(scene))
         self.assertEqual(exact(springs), exact(springs_of(scene)))
+
+    def test_some_fields_keep_the_others(self):
+        a, b, c = self.corners
+        ids = same_ids(ids_of(self.node.add_springs(**one_of_each(a, b, c, damping=0.5))))
+        for fields, values in ((['stiffness'], {'stiffness': 7}), (['damping'], {'damping': 3}),
+                               (['particles'], {}), (['at_rest'], {'at_rest': True})):
+            before = springs_of(self.node.get_scene())
+            self.node.set_springs(fields=fields, **ids, **one_of_each(b, c, a, **values))
+            after = springs_of(self.node.get_scene())
+            for kind in KINDS:
+                expected = before[kind][0]
+                if fields == ['particles']:
+                    expected.particles = one_of_each(b, c, a)[kind][0].particles
+                elif fields == ['at_rest']:
+                    rest = 'rest_solid_angle' if kind == KINDS[1] else 'rest_angle'
+                    setattr(expected, rest, getattr(after[kind][0], rest))
+                    if kind == KINDS[2]:  # a width of 0 is one that the rest angle gives
+                        expected.width = after[kind][0].width
+                else:
+                    setattr(expected, *next(iter(values.items())))
+                self.assertEqual(exact(expected), exact(after[kind][0]))
+        self.assertLess(self.node.step(steps=0).energies.potential, 1e-30)
+
+    def test_fields_that_are_none_of_a_kind(self):
+        a, b, c = self.corners
+        ids = same_ids(ids_of(self.node.add_springs(**one_of_each(a, b, c))))
+        for fields in (['rest_angle'], ['stifness'], ['particles', 'mass']):
+            with self.assertRaisesRegex(Refused, r'fields\[.\] is .*; allowed for .*: particles'):
+                self.node.set_springs(fields=fields, **ids, **one_of_each(a, b, c))
+        with self.assertRaisesRegex(Refused, "fields.*'stifness'; allowed for springs"):
+            self.node.set_springs(fields=['stifness'])
 
 
 class TestRemoving(SpringTest):
