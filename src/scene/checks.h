@@ -46,9 +46,23 @@ inline std::string toText(const Vector3& v) {
   refuse(field, toText(value), allowed);
 }
 
+/// Returns the bound for a number that is just beyond pi or 2 pi, as these are when they are
+/// rounded to 32 bits or to four decimals; any other number as it is.
+inline double withinRoundedPi(double value, const Range& range) {
+  constexpr double kRounding = 3e-6;  // relative
+  const auto isRounded = [&](double bound) {
+    const double size = std::abs(bound);
+    return (size == kPi || size == 2 * kPi) && std::abs(value - bound) <= kRounding * size;
+  };
+  if (value > range.high && isRounded(range.high)) return range.high;
+  if (value < range.low && !range.open_low && isRounded(range.low)) return range.low;
+  return value;
+}
+
 template <class Item>
-void checkFields(const Item& item) {
-  Item::visitFields(item, [](const char* field, double value, const Range& range) {
+void checkFields(Item& item) {
+  Item::visitFields(item, [](const char* field, double& value, const Range& range) {
+    value = withinRoundedPi(value, range);
     requireInside(range, value, field);
   });
 }
@@ -90,6 +104,19 @@ inline void checkParticles(std::vector<Particle>& particles) {
   checkEach(particles, "particles", checkParticle);
 }
 
+/// Refuses an id that is none of those of `table`, which are of items of the kind `what`.
+template <class Item>
+[[noreturn]] void refuseId(const std::string& field, std::uint32_t id, const IdTable<Item>& table,
+                           const std::string& what) {
+  std::string there = "there is none";
+  if (table.size() == 1) there = "there is " + std::to_string(table.ids().front());
+  if (table.size() > 1) {
+    there = "there are " + std::to_string(table.size()) + ", from " +
+            std::to_string(table.ids().front()) + " to " + std::to_string(table.ids().back());
+  }
+  refuse(field, std::to_string(id), "the id of " + what + "; " + there);
+}
+
 template <class Item>
 std::vector<std::size_t> indicesOf(const IdTable<Item>& table, const Ids& ids,
                                    const std::string& list, const std::string& what) {
@@ -97,7 +124,7 @@ std::vector<std::size_t> indicesOf(const IdTable<Item>& table, const Ids& ids,
   std::vector<bool> seen(table.size(), false);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto index = table.find(ids[i]);
-    if (!index) refuse(itemName(list, i), std::to_string(ids[i]), "the id of " + what);
+    if (!index) refuseId(itemName(list, i), ids[i], table, what);
     if (seen[*index]) refuse(itemName(list, i), std::to_string(ids[i]) + " again", "each id once");
     seen[*index] = true;
     indices[i] = *index;
@@ -184,7 +211,7 @@ std::array<std::size_t, Spring::kParticles> particleIndices(const IdTable<Partic
   for (std::size_t j = 0; j < Spring::kParticles; ++j) {
     const std::uint32_t id = spring.particles[j];
     const auto index = particles.find(id);
-    if (!index) refuse(itemName("particles", j), std::to_string(id), "the id of a particle");
+    if (!index) refuseId(itemName("particles", j), id, particles, "a particle");
     if (std::find(indices.begin(), indices.begin() + j, *index) != indices.begin() + j) {
       refuse(itemName("particles", j), std::to_string(id) + " again", "particles that differ");
     }

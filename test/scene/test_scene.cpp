@@ -167,7 +167,8 @@ struct BadSpring {
 
 TEST(SceneRefuses, BadSpringsAndKeepsNothing) {
   const std::vector<BadSpring> table = {
-      {"angle_springs[0].particles[1] is 7; allowed: the id of a particle",
+      {"angle_springs[0].particles[1] is 7; allowed: the id of a particle; there are 3, from 0 to "
+       "2",
        [](SpringLists& s) { s.get<AngleSpring>()[0].particles[1] = 7; }},
       {"angle_springs[0].particles[1] is 0 again; allowed: particles that differ",
        [](SpringLists& s) { s.get<AngleSpring>()[0].particles[1] = 0; }},
@@ -215,7 +216,7 @@ TEST(SceneRefuses, BadIds) {
   EXPECT_EQ(refusal([&] {
               scene.removeParticles({0, 9});
             }),
-            "ids[1] is 9; allowed: the id of a particle");
+            "ids[1] is 9; allowed: the id of a particle; there are 3, from 0 to 2");
   EXPECT_EQ(refusal([&] {
               scene.removeParticles({0, 0});
             }),
@@ -232,7 +233,42 @@ TEST(SceneRefuses, BadIds) {
   ids.get<SolidAngleSpring>() = {0};
   EXPECT_EQ(refusal([&] { scene.removeSprings(ids); }),
             "solid_angle_spring_ids[0] is 0; allowed: the id of a spring among the solid angle "
-            "springs");
+            "springs; there is none");
+}
+
+TEST(SceneRefuses, IdsBesideTheOnlyOne) {
+  Scene scene = octant();
+  scene.removeParticles({0, 2});
+  EXPECT_EQ(refusal([&] { scene.removeParticles({0}); }),
+            "ids[0] is 0; allowed: the id of a particle; there is 1");
+}
+
+TEST(Scene, TakesPiAsItIsRounded) {
+  Scene scene = octant();
+  const auto restsOf = [&](double rest_angle, double rest_solid_angle) {
+    SpringLists springs;
+    springs.get<AngleSpring>() = {testing::angleSpring(0, 1, 1)};
+    springs.get<AngleSpring>()[0].rest_angle = std::abs(rest_angle);
+    springs.get<SolidAngleSpring>() = {testing::solidAngleSpring(0, 1, 2, 1)};
+    springs.get<SolidAngleSpring>()[0].rest_solid_angle = rest_solid_angle;
+    springs.get<OrientedAngleSpring>().resize(1);
+    springs.get<OrientedAngleSpring>()[0].particles = {0, 1, 2};
+    springs.get<OrientedAngleSpring>()[0].stiffness = 1;
+    springs.get<OrientedAngleSpring>()[0].rest_angle = rest_angle;
+    const SpringIds ids = scene.addSprings(springs, testing::positionsOf(scene));
+    return std::vector<double>{scene.springs<AngleSpring>().items().back().rest_angle,
+                               scene.springs<OrientedAngleSpring>().items().back().rest_angle,
+                               scene.springs<SolidAngleSpring>().items().back().rest_solid_angle};
+  };
+  EXPECT_EQ(restsOf(3.1416, 6.2832), (std::vector<double>{kPi, kPi, 2 * kPi}));
+  EXPECT_EQ(restsOf(static_cast<float>(kPi), static_cast<float>(2 * kPi)),
+            (std::vector<double>{kPi, kPi, 2 * kPi}));
+  EXPECT_EQ(restsOf(-3.1416, 3.1416), (std::vector<double>{kPi, -kPi, 3.1416}));
+  EXPECT_EQ(restsOf(3.1415, 6.2831), (std::vector<double>{3.1415, 3.1415, 6.2831}));
+  for (const double beyond : {3.1417, 3.15}) {
+    EXPECT_NE(refusal([&] { restsOf(beyond, 1); }), "");
+    EXPECT_NE(refusal([&] { restsOf(1, 2 * beyond); }), "");
+  }
 }
 
 TEST(SceneRefuses, MoreThanItsLimits) {
