@@ -1,13 +1,18 @@
 #include "base/files.h"
 
 #include <fcntl.h>
+#include <pwd.h>
 #include <sys/stat.h>
+#include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 namespace spherical_springs::core {
 namespace {
@@ -30,6 +35,22 @@ void flushNames(const fs::path& directory) {
   if (file < 0) return;
   ::fsync(file);
   ::close(file);
+}
+
+/// Returns the home directory of a user; empty: who runs this.
+fs::path homeOf(const std::string& user) {
+  std::vector<char> memory(1 << 14);
+  ::passwd entry{}, *found = nullptr;
+  if (user.empty()) {
+    ::getpwuid_r(::getuid(), &entry, memory.data(), memory.size(), &found);
+  } else {
+    ::getpwnam_r(user.c_str(), &entry, memory.data(), memory.size(), &found);
+  }
+  if (found == nullptr) {
+    throw std::invalid_argument("there is no user " + quoted(user) +
+                                ", whose home directory '~' would stand for");
+  }
+  return entry.pw_dir;
 }
 
 fs::path directoryOf(const fs::path& file) {
@@ -122,6 +143,15 @@ std::ifstream openToRead(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) failTo("read", path);
   return in;
+}
+
+fs::path homeExpanded(const std::string& path) {
+  if (path.empty() || path.front() != '~') return path;
+  const std::size_t end = std::min(path.find('/'), path.size());
+  const std::string user = path.substr(1, end - 1);
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const fs::path directory = user.empty() && home != nullptr ? home : homeOf(user);
+  return directory / path.substr(std::min(end + 1, path.size()));
 }
 
 void replaceFile(const fs::path& path, const std::function<void(std::ostream&)>& write) {

@@ -33,6 +33,10 @@ std::ifstream openToRead(const std::filesystem::path& path);
 /// @throw std::filesystem::filesystem_error for links that lead round in circles.
 std::filesystem::path linksFollowed(std::filesystem::path path);
 
+/// Returns a path with a leading `~` or `~name` replaced by a home directory, as a shell would do.
+/// @throw std::invalid_argument where no user has that name.
+std::filesystem::path homeExpanded(const std::string& path);
+
 /// Writes a file beside the one that `path` leads to, puts it on the disk, and gives it that name:
 /// what was there before stays until then, and for good where anything fails. The new file has the
 /// permissions of the old one, and its owner and group where the system allows it.

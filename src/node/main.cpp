@@ -1,10 +1,14 @@
 #include <malloc.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <array>
+#include <clocale>
 #include <csignal>
 #include <stdexcept>
+#include <string>
 
+#include "base/files.h"
 #include "node/actions.h"
 #include "node/callback_threads.h"
 #include "node/faults.h"
@@ -19,6 +23,7 @@
 #include "node/services.h"
 #include "node/stepper.h"
 #include "simulation/runner.h"
+#include "spherical_springs/measures.h"
 #include "spherical_springs/range.h"
 #include "spherical_springs/scene_file.h"
 
@@ -29,12 +34,33 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
                     core::Runner& runner) {
   if (parameters.scene.empty()) return;
   try {
-    auto file = core::readScene(directory.path() / parameters.scene, parameters.simulation().limits);
+    auto file = core::readScene(directory.path() / core::homeExpanded(parameters.scene),
+                                parameters.simulation().limits);
     runner.change([&](core::Simulation& s) { s.load(std::move(file)); });
   } catch (const std::exception& fault) {
     throw std::invalid_argument("parameter ~scene is " + core::quoted(parameters.scene) +
                                 "; allowed: a scene file; " + reasonOf(fault));
   }
+}
+
+/// Says in the log what runs, as a person who has just started it would ask.
+void tellOfStart(const Parameters& parameters, const SceneDirectory& directory,
+                 core::Runner& runner) {
+  const core::Runner::Snapshot now = runner.snapshot();
+  const core::System& system = *now.plan->system();
+  const std::size_t springs =
+      runner.read([](const core::Simulation& s) { return s.scene().springCount(); });
+  const double stable = std::min(Parameters::kLongestTimeStep,
+                                 core::stableTimeStep(system, now.method, now.state.positions));
+  const std::string scene = parameters.scene.empty() ? "none" : core::quoted(parameters.scene);
+  ROS_INFO(
+      "%s: %zu particles, %zu springs; %s, time step %s s (stable up to %.3g s); %d thread%s; "
+      "scene %s; files in %s",
+      now.running ? "running" : "paused", static_cast<std::size_t>(system.particleCount()), springs,
+      core::nameOf(now.method), core::toText(now.time_step).c_str(), stable,
+      parameters.simulation().system.threads,
+      parameters.simulation().system.threads == 1 ? "" : "s", scene.c_str(),
+      core::onOneLine(directory.path()).c_str());
 }
 
 // Who runs what, beside the threads of ROS itself, which read requests and send what is published:
@@ -88,6 +114,7 @@ void run() {
   const Reconfiguration reconfiguration(threads.reconfiguring.handle(node), runner, news, stepper,
                                         publisher, markers, parameters);
   threads.start();
+  tellOfStart(parameters, directory, runner);
   ros::waitForShutdown();
   runner.close();
   threads.stop();
@@ -97,6 +124,9 @@ void run() {
 }  // namespace spherical_springs
 
 int main(int argc, char** argv) {
+  // The log writes names of files in the encoding of the locale, which a service or a container may
+  // not set. Numbers keep their points.
+  std::setlocale(LC_CTYPE, "C.UTF-8");  // NOLINT(concurrency-mt-unsafe): no other thread yet
   ros::init(argc, argv, "spherical_springs");
 #ifdef M_ARENA_MAX
   // Each thread that calls come in on would keep the memory of the largest for itself.

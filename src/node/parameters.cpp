@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "base/available_threads.h"
+#include "node/parameter_values.h"
+#include "node/unknown_parameters.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs {
@@ -24,19 +28,8 @@ std::string inWords(const XmlRpc::XmlRpcValue& value) {
                                              : core::shortened(text.str());
 }
 
-std::string faultOf(const std::string& name, const XmlRpc::XmlRpcValue& value,
-                    const std::string& allowed) {
-  return "parameter ~" + name + " is " + inWords(value) + "; allowed: " + allowed;
-}
-
-// A whole number will do for a real one, but nothing else is taken for something else.
-bool isOf(const XmlRpc::XmlRpcValue& raw, double) {
-  return raw.getType() == Type::TypeDouble || raw.getType() == Type::TypeInt;
-}
-bool isOf(const XmlRpc::XmlRpcValue& raw, int) { return raw.getType() == Type::TypeInt; }
-bool isOf(const XmlRpc::XmlRpcValue& raw, bool) { return raw.getType() == Type::TypeBoolean; }
-bool isOf(const XmlRpc::XmlRpcValue& raw, const std::string&) {
-  return raw.getType() == Type::TypeString;
+std::string faultOf(const std::string& name, const std::string& value, const std::string& allowed) {
+  return "parameter ~" + name + " is " + value + "; allowed: " + allowed;
 }
 
 /// Reads one parameter, if it is set.
@@ -45,9 +38,12 @@ void read(const ros::NodeHandle& node, const std::string& name, const Allowed<Va
           Value& value) {
   XmlRpc::XmlRpcValue raw;
   if (!node.getParam(name, raw)) return;
-  if (!isOf(raw, value) || !node.getParam(name, value) || !allowed.contains(value)) {
-    throw std::invalid_argument(faultOf(name, raw, allowed.words));
+  const std::optional<Value> taken = valueIn<Value>(raw);
+  if (!taken || !allowed.contains(*taken)) {
+    const std::string type_fault = taken ? "" : typeFault<Value>(raw);
+    throw std::invalid_argument(faultOf(name, inWords(raw) + type_fault, allowed.words));
   }
+  value = *taken;
 }
 
 Allowed<double> inside(const core::Range& range) {
@@ -75,6 +71,11 @@ Allowed<std::string> someText(const char* words) {
   return {words, [](const std::string& text) { return !text.empty(); }};
 }
 
+Allowed<std::string> frameName() {
+  return {"a name that is not empty",
+          [](const std::string& name) { return name.find_first_not_of('/') != std::string::npos; }};
+}
+
 /// The values of `Pace` that are allowed, at start and while the node runs.
 struct AllowedPace {
   Allowed<double> time_step = inside({1e-12, Pace::kLongestTimeStep, "1e-12 to 1e6 [s]"});
@@ -94,7 +95,7 @@ void Pace::requireValid() const {
   forEachField(
       [](const char* name, const auto& rule, const auto& value) {
         if (rule.contains(value)) return;
-        const std::string fault = faultOf(name, XmlRpc::XmlRpcValue(value), rule.words);
+        const std::string fault = faultOf(name, inWords(XmlRpc::XmlRpcValue(value)), rule.words);
         if (isNonFinite(value)) throw core::NonFinite(fault);
         throw std::invalid_argument(fault);
       },
@@ -113,14 +114,21 @@ std::string Pace::differenceFrom(const Pace& other) const {
   return words;
 }
 
+std::string directoryOfRos() {
+  const char* directory = std::getenv("ROS_HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return directory != nullptr && *directory != '\0' ? directory : "~/.ros";
+}
+
 Parameters Parameters::from(const ros::NodeHandle& node) {
+  std::vector<std::string> names;
   const auto readField = [&](const char* name, const auto& allowed, auto& value) {
     read(node, name, allowed, value);
+    names.emplace_back(name);
   };
   Parameters p;
   const AllowedPace allowed;
   forEachField(readField, allowed, p);
-  readField("frame_id", someText("a name that is not empty"), p.frame_id);
+  readField("frame_id", frameName(), p.frame_id);
   readField("radius", inside({1e-6, 1e6, "1e-6 to 1e6 [m]"}), p.radius);
   readField("scene", anyText("the path of a file"), p.scene);
   readField("threads", wholeNumbers(0, 256), p.threads);
@@ -128,6 +136,8 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
   readField("max_particles", wholeNumbers(0, core::SceneLimits::kMostParticles), p.max_particles);
   readField("max_springs", wholeNumbers(0, core::SceneLimits::kMostSprings), p.max_springs);
   readField("scene_directory", someText("the path of a directory"), p.scene_directory);
+  warnOfUnknownParameters(node, names);
+  p.frame_id.erase(0, p.frame_id.find_first_not_of('/'));  // frames of tf2 begin with no slash
   return p;
 }
 

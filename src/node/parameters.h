@@ -44,6 +44,9 @@ struct Pace {
   std::string differenceFrom(const Pace& other) const;
 };
 
+/// Returns the directory in which ROS keeps files: $ROS_HOME, or ~/.ros.
+std::string directoryOfRos();
+
 /// The node's parameters, with their defaults.
 struct Parameters : Pace {
   std::string frame_id = "map";             ///< of poses, energies and markers
@@ -53,7 +56,7 @@ struct Parameters : Pace {
   std::string spring_damping = "relative";  ///< "relative", "own"
   int max_particles = 20'000'000;
   int max_springs = 100'000'000;
-  std::string scene_directory = "~/.ros/spherical_springs";  ///< of files named in services
+  std::string scene_directory = directoryOfRos() + "/spherical_springs";  ///< of files of services
 
   /// Reads what is set under `node`.
   /// @throw std::invalid_argument as `requireValid` does, for every parameter.

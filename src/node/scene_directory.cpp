@@ -1,8 +1,7 @@
 #include "node/scene_directory.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
+#include <system_error>
 
 #include "base/files.h"
 #include "spherical_springs/range.h"
@@ -20,20 +19,20 @@ namespace {
 
 }  // namespace
 
-SceneDirectory::SceneDirectory(const std::string& directory) : directory_(directory) {
+SceneDirectory::SceneDirectory(const std::string& directory) {
   constexpr auto kParameter = "parameter ~scene_directory";
-  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
-  if (directory == "~" || directory.rfind("~/", 0) == 0) {
-    directory_ = fs::path(home != nullptr ? home : "/") /
-                 directory.substr(std::min<std::size_t>(2, directory.size()));
-  }
+  constexpr auto kAllowed = "a directory, or a name that is free; ";
   try {
-    directory_ = fs::weakly_canonical(core::linksFollowed(fs::absolute(directory_)));
-    if (fs::exists(directory_) && !fs::is_directory(directory_)) {
-      refuse(kParameter, directory, "a directory, or a name that is free");
-    }
+    directory_ =
+        fs::weakly_canonical(core::linksFollowed(fs::absolute(core::homeExpanded(directory))));
   } catch (const fs::filesystem_error& fault) {
-    refuse(kParameter, directory, "a directory, or a name that is free; " + fault.code().message());
+    refuse(kParameter, directory, kAllowed + fault.code().message());
+  } catch (const std::invalid_argument& fault) {
+    refuse(kParameter, directory, std::string(kAllowed) + fault.what());
+  }
+  std::error_code unknown;
+  if (fs::exists(directory_, unknown) && !fs::is_directory(directory_, unknown)) {
+    refuse(kParameter, directory, "a directory, or a name that is free");
   }
 }
 
@@ -43,7 +42,8 @@ fs::path SceneDirectory::inside(const std::string& path) const {
   }
   if (path.empty()) refuse("path", path, "the name of a file");
   try {
-    fs::path whole = fs::weakly_canonical(core::linksFollowed(directory_ / path));
+    fs::path whole =
+        fs::weakly_canonical(core::linksFollowed(directory_ / core::homeExpanded(path)));
     const fs::path from_here = whole.lexically_relative(directory_);
     if (from_here.empty() || *from_here.begin() == "..") {
       refuse("path", path, "files inside " + core::onOneLine(directory_));

@@ -8,7 +8,7 @@ namespace spherical_springs {
 /// The one directory in which services may read and write files.
 class SceneDirectory {
  public:
-  /// A leading `~` is the home directory.
+  /// A leading `~` or `~name` is a home directory, here and in `inside`.
   explicit SceneDirectory(const std::string& directory);
 
   /// @return the whole path of `path`, which is relative to the directory and inside it, links

@@ -29,7 +29,8 @@ double parseAngleWeight(const std::string& text) {
 
 po::options_description described(Options& options) {
   const auto path = [](fs::path& target) {
-    return po::value<std::string>()->notifier([&](const std::string& text) { target = text; });
+    return po::value<std::string>()->notifier(
+        [&](const std::string& text) { target = core::homeExpanded(text); });
   };
   po::options_description all(
       "relax_mesh: maps a closed surface to the sphere, every face to its share of the area.\n"

@@ -176,8 +176,36 @@ class TestFiles(unittest.TestCase):
                         scene='first.json') as process:
                 self.assertEqual(exact(saved), exact(process.client().get_scene()))
 
+    def test_a_scene_in_the_home_directory(self):
+        with tempfile.TemporaryDirectory() as home:
+            with paused(scene_directory=home) as process:
+                node = process.client()
+                add_octant(node, damping=0)
+                node.save_scene('first.json')
+            with NodeProcess(environment={'HOME': home}, running='false', scene='~/first.json',
+                             scene_directory='~/made') as process:
+                node = process.client()
+                self.assertEqual(3, len(node.get_scene().particles))
+                node.save_scene('~/made/second.json')
+                self.assertEqual(['second.json'], os.listdir(home + '/made'))
+                with self.assertRaisesRegex(Refused, 'allowed: files inside'):
+                    node.load_scene('~/first.json')
+
+    def test_a_home_directory_of_nobody(self):
+        for parameter in ('scene', 'scene_directory'):
+            with NodeProcess(**{parameter: '~nobody_of_this_name/x'}) as process:
+                self.assertEqual(1, process.exit_code())
+                self.assertIn("no user 'nobody_of_this_name'", process.output())
+
+    def test_scene_directory_is_in_the_directory_of_ros(self):
+        with tempfile.TemporaryDirectory() as home:
+            with NodeProcess(environment={'ROS_HOME': home}, running='false') as process:
+                process.client().save_scene('empty.json')
+            self.assertTrue(os.path.isfile(home + '/spherical_springs/empty.json'))
+
     def test_scene_directory_by_default(self):
         with tempfile.TemporaryDirectory() as home:
-            with NodeProcess(environment={'HOME': home}, running='false') as process:
+            with NodeProcess(environment={'HOME': home, 'ROS_HOME': ''},
+                             running='false') as process:
                 process.client().save_scene('empty.json')
             self.assertTrue(os.path.isfile(home + '/.ros/spherical_springs/empty.json'))

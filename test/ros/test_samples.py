@@ -69,6 +69,10 @@ class TestPoses(NodeTest):
             with node.listen('energies', Energies) as samples:
                 self.assertEqual('globe', samples.first().header.frame_id)
 
+    def test_a_frame_has_no_slash_before_it(self):
+        with NodeProcess(running='false', frame_id='/globe/fixed') as process:
+            self.assertEqual('globe/fixed', self.sampled(process.client()).header.frame_id)
+
 
 class TestEnergies(NodeTest):
     def run_with_damping(self, add, seconds):
