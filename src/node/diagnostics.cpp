@@ -31,6 +31,7 @@ void Diagnostics::fill(diagnostic_updater::DiagnosticStatusWrapper& wrapper) {
   if (!news.refusal.empty()) {
     wrapper.mergeSummary(DiagnosticStatus::ERROR, "refused: " + news.refusal);
   }
+  if (report_->waits_for_clock) wrapper.mergeSummary(DiagnosticStatus::WARN, kWaitsForClock);
   if (report_->behind) {
     wrapper.mergeSummary(DiagnosticStatus::WARN, "simulated time falls behind the clock");
   }

@@ -11,13 +11,17 @@
 
 namespace spherical_springs {
 
+constexpr auto kWaitsForClock =
+    "waiting for /clock: /use_sim_time is true, and nobody has published a time yet";
+
 /// Facts to report at one moment.
 struct Report {
   Status status;
   News::Facts news;
-  std::string warning;    ///< what is wrong with the steps; empty when nothing is
-  bool blown_up = false;  ///< the energy is far from what it should be
-  bool behind = false;    ///< simulated time falls behind the clock
+  std::string warning;           ///< what is wrong with the steps; empty when nothing is
+  bool blown_up = false;         ///< the energy is far from what it should be
+  bool waits_for_clock = false;  ///< time is to be simulated, and has not begun
+  bool behind = false;           ///< simulated time falls behind the clock
 };
 
 /// The node's part of /diagnostics: OK, WARN or ERROR, and the figures of Status. For one thread.

@@ -18,8 +18,10 @@ const char* nameOf(const core::Runner::Snapshot& snapshot) {
 
 /// A warning stands for as long as its cause, but hides nothing new.
 std::string messageOf(const Report& report) {
-  if (report.warning.empty()) return report.news.message;
-  return report.news.message_is_new ? report.news.message + "; " + report.warning : report.warning;
+  std::string warning = report.waits_for_clock ? kWaitsForClock : "";
+  if (!report.warning.empty()) warning += (warning.empty() ? "" : "; ") + report.warning;
+  if (warning.empty()) return report.news.message;
+  return report.news.message_is_new ? report.news.message + "; " + warning : warning;
 }
 
 }  // namespace
@@ -154,6 +156,7 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   real_time_monitor_.expect(expected_factor_, snapshot.time_step);
   report.behind = real_time_monitor_.behind(message.state == "running", ros::Time::now().toSec(),
                                             snapshot.stepped_time);
+  report.waits_for_clock = ros::Time::isSimTime() && ros::Time::now().isZero();
   report.news = news_.facts();
   message.message = messageOf(report);
   return report;

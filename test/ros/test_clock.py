@@ -8,13 +8,14 @@ import unittest
 import numpy as np
 import rosbag
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseArray
 from rosgraph_msgs.msg import Clock
 from spherical_springs.msg import Energies, Status
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-from node_client import LONG, NodeProcess
+from node_client import LONG, Listener, NodeProcess
 from scenes import add_octant, add_random_scene, exact, positions, vector
 
 
@@ -57,6 +58,18 @@ class TestClock(ClockTest):
             self.set_clock(self.clock + 0.1)
             now = self.node.get_scene().time
             self.assertLess(now - begin, self.clock - begin_of_clock + 0.01)
+
+    def test_who_waits_for_the_clock_says_so(self):
+        words = 'waiting for /clock'
+        with self.node.listen('status', Status) as statuses, \
+                Listener('/diagnostics', DiagnosticArray) as diagnostics:
+            statuses.first(lambda status: words in status.message)
+            diagnostics.first(lambda array: any(
+                words in status.message and status.level == DiagnosticStatus.WARN
+                and self.process.name[1:] in status.name for status in array.status))
+            self.set_clock(100)
+            statuses.first(lambda status: status.header.stamp.secs == 100
+                           and words not in status.message)
 
     def test_a_clock_that_starts_late(self):
         self.assertEqual(0, self.time_of_standing_clock())
