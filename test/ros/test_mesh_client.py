@@ -225,10 +225,11 @@ class TestNode(MeshTest):
         os.mkdir(self.directory)
         vertices, faces = bumpy(2)
         self.write('left hand.obj', vertices, faces)
+        environment = {name: value for name, value in os.environ.items() if name != 'PWD'}
         ended = subprocess.run(
-            ['roslaunch', PACKAGE, 'mesh.launch', 'mesh:=left hand.obj', 'uv:=uv of it.obj',
+            ['roslaunch', PACKAGE, 'mesh.launch', 'mesh:=./left hand.obj', 'uv:=uv of it.obj',
              'name:=springs_of_mesh'],
-            cwd=self.directory, env={**os.environ, 'PWD': self.directory}, timeout=4 * LONG,
+            cwd=self.directory, env=environment, timeout=4 * LONG,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.assertEqual({'left hand.obj', 'left hand_sphere.obj', 'uv of it.obj'},
                          set(os.listdir(self.directory)), ended.stdout)
