@@ -2,12 +2,13 @@
 
 import math
 import os
+import subprocess
 import unittest
 
 import numpy as np
 import rospkg
 
-from node_client import PACKAGE, NodeProcess
+from node_client import LONG, PACKAGE, NodeClient, NodeProcess
 from scenes import angle, positions
 
 LAUNCH = os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch')
@@ -34,3 +35,36 @@ class TestExamples(unittest.TestCase):
         np.testing.assert_allclose(steps, math.radians(20), atol=1e-6)
         np.testing.assert_array_equal(before[::6], after[::6])
         self.assertGreater(min(map(angle, before[1:6], after[1:6])), 0.01)
+
+
+class TestClient(unittest.TestCase):
+    """spread_directions.py, which talks to the node of its namespace."""
+
+    def run_client(self, namespace):
+        return subprocess.run(
+            ['rosrun', PACKAGE, 'spread_directions.py'], timeout=LONG, text=True,
+            env={**os.environ, 'ROS_NAMESPACE': namespace},
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+    def test_in_a_namespace(self):
+        with NodeProcess(name='/' + PACKAGE, environment={'ROS_NAMESPACE': '/robot'}) as process:
+            NodeClient('/robot/' + PACKAGE)
+            outcome = self.run_client('/robot')
+            self.assertEqual(0, outcome.returncode, outcome.stdout + process.output())
+            directions = np.array([[float(number) for number in line.split()]
+                                   for line in outcome.stdout.splitlines()[1:]])
+            self.assertEqual((12, 3), directions.shape, outcome.stdout)
+
+    def test_a_refusal_is_shown(self):
+        with NodeProcess(name='/' + PACKAGE, environment={'ROS_NAMESPACE': '/small'},
+                         max_particles=11):
+            NodeClient('/small/' + PACKAGE)
+            outcome = self.run_client('/small')
+            self.assertEqual(1, outcome.returncode)
+            self.assertIn('/small/spherical_springs/add_particles: particles', outcome.stdout)
+
+    def test_no_node(self):
+        outcome = self.run_client('/nobody')
+        self.assertEqual(1, outcome.returncode)
+        self.assertEqual(1, len(outcome.stdout.splitlines()), outcome.stdout)
+        self.assertIn('there is no node /nobody/spherical_springs', outcome.stdout)
