@@ -11,124 +11,22 @@
 #include <string>
 #include <vector>
 
-#include "meshes.h"
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/measures.h"
 #include "spherical_springs/relaxation.h"
-#include "support/tumbling_scenes.h"
+#include "support/scenes.h"
 #include "transcription/report.h"
+#include "work_scenes.h"
 
 namespace {
 
 using namespace spherical_springs::core;  // NOLINT: a program, not a header
+using benchmark_scenes::WorkScene;
+using testing::stateOf;
 
 double now() {
   const auto time = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double>(time).count();
-}
-
-struct Case {
-  std::string name;
-  Scene scene;
-  double duration;                         // [s]
-  std::function<Points(double)> solution;  // closed form, where there is one
-};
-
-State stateOf(const Scene& scene) {
-  State state;
-  const auto& particles = scene.particles().items();
-  state.positions.resize(3, particles.size());
-  state.angular_velocities.resize(3, particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    state.positions.col(i) = particles[i].position;
-    state.angular_velocities.col(i) = particles[i].angular_velocity;
-  }
-  return state;
-}
-
-Scene sceneOf(const std::vector<Particle>& particles, const SpringLists& springs) {
-  Scene scene;
-  scene.addParticles(particles);
-  scene.addSprings(springs, stateOf(scene).positions);
-  return scene;
-}
-
-AngleSpring angleSpring(std::uint32_t a, std::uint32_t b, double rest, double stiffness) {
-  AngleSpring spring;
-  spring.particles = {a, b};
-  spring.rest_angle = rest;
-  spring.stiffness = stiffness;
-  return spring;
-}
-
-// --- the scenes ---
-
-Case pair() {
-  std::vector<Particle> particles(2);
-  SpringLists springs;
-  springs.get<AngleSpring>() = {angleSpring(0, 1, 1, 1)};
-  const auto at = [](double time) {
-    const double half = (1 + 0.3 * std::cos(std::sqrt(2.) * time)) / 2;
-    Points positions(3, 2);
-    positions.col(0) = Vector3(std::cos(half), -std::sin(half), 0);
-    positions.col(1) = Vector3(std::cos(half), std::sin(half), 0);
-    return positions;
-  };
-  for (int i = 0; i < 2; ++i) particles[i].position = at(0).col(i);
-  return {"pair", sceneOf(particles, springs), 20, at};
-}
-
-std::vector<Particle> spread(double damping) {
-  std::vector<Particle> particles(3);
-  particles[0].position = Vector3(1, 0.15, 0.05);
-  particles[1].position = Vector3(0.9, 0.5, 0.1);
-  particles[2].position = Vector3(0.9, 0.1, 0.5);
-  for (Particle& particle : particles) particle.damping = damping;
-  return particles;
-}
-
-SpringLists triangleOfArcs(double damping, double stiffest) {
-  SpringLists springs;
-  springs.get<AngleSpring>() = {angleSpring(0, 1, spherical_springs::core::kPi / 2, stiffest),
-                                angleSpring(1, 2, spherical_springs::core::kPi / 2, 1),
-                                angleSpring(2, 0, spherical_springs::core::kPi / 2, 1)};
-  for (AngleSpring& spring : springs.get<AngleSpring>()) spring.damping = damping;
-  return springs;
-}
-
-Scene mesh(double damping) {
-  const benchmark_scenes::Mesh sphere = benchmark_scenes::icosphere(3);
-  std::mt19937 generator(1);
-  const auto noise = [&] { return generator() / 2147483648. - 1; };
-  std::vector<Particle> particles(sphere.vertices.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    particles[i].position = sphere.vertices[i] + 0.01 * Vector3(noise(), noise(), noise());
-  }
-  SpringLists springs;
-  for (const auto& [a, b] : sphere.edges) {
-    const double angle = arc(sphere.vertices[a], sphere.vertices[b]).angle;
-    springs.get<AngleSpring>().push_back(angleSpring(a, b, angle * (1 + 0.1 * noise()), 1));
-    springs.get<AngleSpring>().back().damping = damping;
-  }
-  for (const auto& face : sphere.faces) {
-    const auto& v = sphere.vertices;
-    SolidAngleSpring spring;
-    spring.particles = face;
-    spring.rest_solid_angle = solidAngle(v[face[0]], v[face[1]], v[face[2]]) * (1 + 0.2 * noise());
-    spring.stiffness = 10;
-    springs.get<SolidAngleSpring>().push_back(spring);
-  }
-  return sceneOf(particles, springs);
-}
-
-std::vector<Case> cases() {
-  return {pair(),
-          {"figure 3", sceneOf(spread(0.5), triangleOfArcs(0, 1)), 10, nullptr},
-          {"mesh", mesh(0), 5, nullptr},
-          {"damped mesh", mesh(0.2), 5, nullptr},
-          {"stiff", sceneOf(spread(0), triangleOfArcs(0, 1e6)), 0.2, nullptr},
-          // Until its way depends on all that came before.
-          {"tumbling", testing::tumblingScene(3), 4, nullptr}};
 }
 
 // --- stepping ---
@@ -139,7 +37,7 @@ struct Outcome {
   double wall_time;     // [s]
 };
 
-Outcome stepped(const Case& c, IntegrationMethod method, double time_step, int steps) {
+Outcome stepped(const WorkScene& c, IntegrationMethod method, double time_step, int steps) {
   const auto plan = std::make_shared<const Plan>(c.scene, System::Options());
   State state = stateOf(c.scene);
   const double before = energies(*plan, state).total();
@@ -152,13 +50,13 @@ Outcome stepped(const Case& c, IntegrationMethod method, double time_step, int s
 }
 
 /// The report has no damping of whole springs; its scenes here have none.
-bool isTranscribable(const Case& c) {
+bool isTranscribable(const WorkScene& c) {
   const auto& arcs = c.scene.springs<AngleSpring>().items();
   return std::none_of(arcs.begin(), arcs.end(),
                       [](const AngleSpring& spring) { return spring.damping > 0; });
 }
 
-Outcome transcribed(const Case& c, double time_step, int steps) {
+Outcome transcribed(const WorkScene& c, double time_step, int steps) {
   report::Scene plain;
   for (const Particle& p : c.scene.particles().items()) {
     const Vector3& at = p.position;
@@ -192,7 +90,7 @@ Outcome medianOfThree(const std::function<Outcome()>& run) {
 
 double distance(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
 
-void measureSteps(const Case& c, double budget, std::ostream& csv) {
+void measureSteps(const WorkScene& c, double budget, std::ostream& csv) {
   const auto system = std::make_shared<const System>(c.scene, System::Options());
   const double stable =
       stableTimeStep(*system, IntegrationMethod::verlet, stateOf(c.scene).positions);
@@ -229,7 +127,7 @@ void measureSteps(const Case& c, double budget, std::ostream& csv) {
 // --- relaxing ---
 
 void measureRelaxation(std::ostream& csv) {
-  const Scene scene = mesh(0);
+  const Scene scene = benchmark_scenes::mesh(0);
   const System system(scene, System::Options());
   for (const char* name : {"newton", "dynamics", "fire"}) {
     RelaxationOptions options;
@@ -255,7 +153,7 @@ int main(int argc, char** argv) {
   const double budget = argc == 4 ? std::atof(argv[3]) : 1;
   std::ofstream steps(argv[1]);
   steps << "scene,method,time_step,wall_per_second,trajectory_error,energy_error\n";
-  for (const Case& c : cases()) {
+  for (const WorkScene& c : benchmark_scenes::workScenes()) {
     std::cout << c.name << std::endl;
     measureSteps(c, budget, steps);
   }
