@@ -52,8 +52,8 @@ class Account {
 /// \snippet test_headers.cpp measures
 struct Measures {
   double stable_time_step = 0;  ///< the largest that the method bears here [s]; may be infinite
-  double local_error = 0;       ///< estimated, of one step [rad]
-  double error_rate = 0;        ///< local_error by the time step [rad/s]
+  double local_error = 0;       ///< of a step in the mean: error_rate times the time step [rad]
+  double error_rate = 0;        ///< as errorRate() has it [rad/s]
   double energy_error = 0;      ///< as Account has it
   double angular_momentum_error = 0;  ///< as Account has it
   double norm_error = 0;              ///< max | |p| - 1 |
@@ -77,9 +77,11 @@ double normError(const State& state);
 /// The largest time step [s] that `method` bears here; infinite where nothing bounds it.
 double stableTimeStep(const System& system, IntegrationMethod method, const Points& positions);
 
-/// Estimated error [rad] of one step from `state`, by the difference from two steps of half the
-/// length.
-double localError(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
-                  double time_step, const State& state);
+/// Estimates the error [rad/s] of steps of `time_step` [s] from `state` on: the largest distance,
+/// over particles and the 3 to 5 periods of the fastest motion that follow, between where these
+/// steps lead and where exact ones do, by the time that this takes.
+/// @throw std::bad_alloc.
+double errorRate(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
+                 double time_step, const State& state);
 
 }  // namespace spherical_springs::core

@@ -14,20 +14,46 @@
 
 namespace spherical_springs::core {
 
+/// How a simulation is to step.
+/// \snippet test_headers.cpp accuracy
+struct StepWish {
+  static constexpr double kShortest = 1e-12, kLongest = 1e6;  ///< time steps to choose from [s]
+
+  IntegrationMethod method = IntegrationMethod::verlet;
+  double time_step = 0.001;  ///< [s]; above an accuracy of 0, only where nothing moves
+  double accuracy = 0;       ///< largest error per simulated second [rad/s]; 0: any, by `time_step`
+  bool chooses_method = false;  ///< `verlet` or `fourth_order`, whichever takes less work
+
+  /// @throw std::invalid_argument naming what is wrong and what is allowed: a time step above 0, an
+  /// accuracy of 0 or above, and of more than 0 where the method is to be chosen.
+  void requireValid() const;
+
+  /// Whether it asks for the same steps as `other`.
+  bool asksTheSameAs(const StepWish& other) const;
+};
+
+/// How a simulation steps.
+struct StepChoice {
+  IntegrationMethod method = IntegrationMethod::verlet;
+  double time_step = 0.001;  ///< [s]
+  double error_rate = 0;     ///< estimated for it, where an accuracy was asked for [rad/s]
+  bool is_reached = true;    ///< whether that is within the accuracy
+  std::uint64_t steps_to_review = ~std::uint64_t(0);  ///< after which it is looked at again
+};
+
 /// For one thread at a time. Changing functions throw what Scene's throw, or std::bad_alloc, and
 /// then change nothing; each that changes something begins the account of energy anew.
 /// \snippet test_headers.cpp simulation
 class Simulation {
  public:
-  /// Choices that last as long as the simulation, but for those that `stepBy` changes.
-  struct Settings {
-    IntegrationMethod method = IntegrationMethod::verlet;  ///< of `step`
-    double time_step = 0.001;                              ///< [s]
-    System::Options system;                                ///< damping of springs, and threads
-    SceneLimits limits;                                    ///< how much the scene may hold
+  /// Choices that last as long as the simulation, but for the wish, which `stepBy` changes.
+  struct Settings : StepWish {
+    System::Options system;  ///< damping of springs, and threads
+    SceneLimits limits;      ///< how much the scene may hold
   };
 
   /// An empty scene at time 0.
+  /// @throw std::invalid_argument as StepWish::requireValid does.
   explicit Simulation(const Settings& settings);
 
   /// Adds particles as Scene::addParticles does; the others keep the places that they have come to.
@@ -55,12 +81,19 @@ class Simulation {
   /// @throw std::invalid_argument as Scene::reserveIdsOf does.
   void load(SceneFile file);
 
-  /// Chooses the method and the time step [s] of the steps to come. Scene, state, time and account
-  /// go on.
-  /// @throw std::invalid_argument unless the time step is above 0 and finite.
-  void stepBy(IntegrationMethod method, double time_step);
+  /// Says how the steps to come are to be. Scene, state, time and account go on.
+  /// @throw std::invalid_argument as StepWish::requireValid does.
+  void stepBy(const StepWish& wish);
 
-  /// Steps of the present time step: all of them, or none where memory runs out.
+  /// Returns how the next step is done. It is chosen for an accuracy when first asked for after a
+  /// change of scene or wish, and looked at again after a number of steps that it names itself.
+  /// Bits of states depend neither on who asks nor on how steps are cut into calls.
+  const StepChoice& choice();
+
+  /// The choice as it is, which may be of another scene or wish until `choice` or `step` is called.
+  const StepChoice& lastChoice() const { return choice_; }
+
+  /// Steps: all of them, or none where memory runs out.
   void step(std::uint64_t steps = 1);
 
   /// Puts the particles, at rest, at `positions`, where a relaxation has brought them: one unit
@@ -68,10 +101,17 @@ class Simulation {
   /// there and at rest already.
   void settle(const Points& positions);
 
-  /// Puts back an earlier state of the same scene, with as many particles.
-  void restore(State state);
+  /// A state, and how it was stepped.
+  struct Moment {
+    State state;
+    StepChoice choice;
+  };
+  /// Returns the present moment, for `restore`.
+  Moment moment();
+  /// Puts back an earlier moment of the same scene and wish.
+  void restore(Moment moment);
 
-  /// Returns the settings, with the method and the time step that were chosen last.
+  /// Returns the settings, with the wish that was told last.
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return scene_; }  ///< with particles where they were last set
   const State& state() const;                    ///< where the particles are now
@@ -99,6 +139,9 @@ class Simulation {
  private:
   State& changeState();
   void beginAt(State start);
+  StepChoice chosenFor(const StepWish& wish);
+  void adopt(const StepChoice& choice);
+  void stepAtOnce(std::uint64_t steps);
   void moved();
   void parametersChanged();
   void topologyChanged();
@@ -108,6 +151,8 @@ class Simulation {
   mutable State state_;
   mutable bool integrator_is_ahead_ = false;  // of the state
   bool integrator_has_state_ = false;
+  StepChoice choice_;
+  bool choice_holds_ = false;  // for the present scene and wish
   // Made when first needed after a change; the plan and the integrator outlive moves.
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const Plan> earlier_plan_;  // of the same topology, with other parameters

@@ -188,11 +188,12 @@ void Handlers::setRunning(const std_srvs::SetBool::Request& request,
 
 namespace {
 
-/// Returns how many steps of a length [s] a request asks for.
+/// Returns how many steps of a length [s] a request asks for, beyond those that are done.
 /// @throw std::invalid_argument where it does so in two ways, or for more than a step may take.
-std::uint32_t stepsIn(const Step::Request& request, double time_step) {
+std::uint32_t stepsIn(const Step::Request& request, double time_step,
+                      const core::Runner::Done& done) {
   constexpr std::uint32_t kMost = ~std::uint32_t(0);
-  if (request.duration == 0) return request.steps;
+  if (request.duration == 0) return request.steps - static_cast<std::uint32_t>(done.steps);
   if (request.steps != 0) {
     throw std::invalid_argument("steps is " + std::to_string(request.steps) + " and duration is " +
                                 core::toText(request.duration) +
@@ -201,9 +202,12 @@ std::uint32_t stepsIn(const Step::Request& request, double time_step) {
   const double longest = kMost * time_step;
   const std::string allowed =
       "0 to " + core::toText(longest) + " [s], the time of " + std::to_string(kMost) + " steps";
-  core::requireInside(core::Range{0, longest, allowed.c_str()}, request.duration, "duration");
+  if (done.steps == 0) {
+    core::requireInside(core::Range{0, longest, allowed.c_str()}, request.duration, "duration");
+  }
+  const double steps = std::round((request.duration - done.time) / time_step);
   return static_cast<std::uint32_t>(
-      std::min<double>(std::round(request.duration / time_step), kMost));
+      std::clamp<double>(steps, 0, static_cast<double>(kMost - done.steps)));
 }
 
 }  // namespace
@@ -220,13 +224,14 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer,
     response.time = now.state.time;
     response.energies = energiesOf(now, frame_id_);
   };
-  std::uint32_t steps = 0;
-  double time_step = 0;
-  const auto count = [&](const core::Simulation& s) {
-    time_step = s.settings().time_step;
-    return steps = stepsIn(request, time_step);
+  std::uint64_t steps = 0;
+  const auto count = [&](double time_step, const core::Runner::Done& done) {
+    const std::uint32_t left = stepsIn(request, time_step, done);
+    steps = done.steps + left;
+    return left;
   };
-  if (runner_.read(count) == 0) {
+  const double time_step = runner_.choice().time_step;
+  if (count(time_step, {}) == 0) {
     if (request.duration != 0) {
       response.message = "did no step: a duration of " + core::toText(request.duration) +
                          " s is less than half of the time step, " + core::toText(time_step) + " s";
@@ -235,7 +240,7 @@ void Handlers::step(const Step::Request& request, Answer<Step>& answer,
     return;
   }
   const StatusChange told_at_the_end(news_);
-  const std::uint64_t done = runner_.step(count, report, follower);
+  const std::uint64_t done = runner_.step(count, report, follower).steps;
   news_.sceneChanged();
   response.steps = static_cast<std::uint32_t>(done);
   response.message = done == steps ? "did " : "cancelled after ";

@@ -76,14 +76,27 @@ Allowed<std::string> frameName() {
           [](const std::string& name) { return name.find_first_not_of('/') != std::string::npos; }};
 }
 
+constexpr const char* kAutomatic = "automatic";
+
 /// The values of `Pace` that are allowed, at start and while the node runs.
 struct AllowedPace {
-  Allowed<double> time_step = inside({1e-12, Pace::kLongestTimeStep, "1e-12 to 1e6 [s]"});
-  Allowed<std::string> integrator = oneOf({"euler", "verlet", "fourth_order", "implicit_euler"});
+  Allowed<double> time_step =
+      inside({core::StepWish::kShortest, core::StepWish::kLongest, "1e-12 to 1e6 [s]"});
+  Allowed<std::string> integrator =
+      oneOf({"euler", "verlet", "fourth_order", "implicit_euler", kAutomatic});
+  Allowed<double> accuracy = inside({0, 1e6, "0 (off) to 1e6 [rad/s]"});
   Allowed<double> real_time_factor = inside({1e-6, 1e6, "1e-6 to 1e6"});
   Allowed<double> publish_rate = inside({1e-3, 1e4, "0.001 to 10000 [Hz]"});
   Allowed<bool> running = {"true, false", [](bool) { return true; }};
 };
+
+/// @throw std::invalid_argument where no accuracy says which integrator to choose.
+void requireAccuracyIfAutomatic(const Pace& pace) {
+  if (pace.integrator != kAutomatic || pace.accuracy > 0) return;
+  throw std::invalid_argument(
+      "parameter ~integrator is 'automatic' while ~accuracy is 0; allowed: 'automatic' with an "
+      "~accuracy above 0 [rad/s], or one of the other integrators");
+}
 
 bool isNonFinite(double value) { return !std::isfinite(value); }
 bool isNonFinite(const std::string&) { return false; }
@@ -100,6 +113,16 @@ void Pace::requireValid() const {
         throw std::invalid_argument(fault);
       },
       allowed, *this);
+  requireAccuracyIfAutomatic(*this);
+}
+
+core::StepWish Pace::steps() const {
+  core::StepWish wish;
+  wish.chooses_method = integrator == kAutomatic;
+  if (!wish.chooses_method) wish.method = core::integrationMethod(integrator);
+  wish.time_step = time_step;
+  wish.accuracy = accuracy;
+  return wish;
 }
 
 std::string Pace::differenceFrom(const Pace& other) const {
@@ -128,6 +151,7 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
   Parameters p;
   const AllowedPace allowed;
   forEachField(readField, allowed, p);
+  requireAccuracyIfAutomatic(p);
   readField("frame_id", frameName(), p.frame_id);
   readField("radius", inside({1e-6, 1e6, "1e-6 to 1e6 [m]"}), p.radius);
   readField("scene", anyText("the path of a file"), p.scene);
@@ -143,8 +167,7 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
 
 core::Simulation::Settings Parameters::simulation() const {
   core::Simulation::Settings settings;
-  settings.method = core::integrationMethod(integrator);
-  settings.time_step = time_step;
+  static_cast<core::StepWish&>(settings) = steps();
   settings.system.spring_damping =
       spring_damping == "own" ? core::SpringDamping::own : core::SpringDamping::relative;
   settings.system.threads = threads > 0 ? threads : core::availableThreads();

@@ -18,10 +18,9 @@ struct Allowed {
 
 /// The parameters that may change while the node runs, with their defaults.
 struct Pace {
-  static constexpr double kLongestTimeStep = 1e6;  // [s]
-
-  double time_step = 0.001;           ///< [s]
-  std::string integrator = "verlet";  ///< as core::integrationMethod has it
+  double time_step = 0.001;           ///< [s]; above an accuracy of 0, the one that it chose
+  std::string integrator = "verlet";  ///< as core::integrationMethod has it, or "automatic"
+  double accuracy = 0;                ///< error per simulated second [rad/s]; 0: off
   double real_time_factor = 1;        ///< simulated time / time of the clock
   double publish_rate = 30;           ///< of poses, energies and markers [Hz]
   bool running = true;                ///< whether time goes on
@@ -31,6 +30,7 @@ struct Pace {
   static void forEachField(const Visitor& visit, Holders&... holders) {
     visit("time_step", holders.time_step...);
     visit("integrator", holders.integrator...);
+    visit("accuracy", holders.accuracy...);
     visit("real_time_factor", holders.real_time_factor...);
     visit("publish_rate", holders.publish_rate...);
     visit("running", holders.running...);
@@ -39,6 +39,9 @@ struct Pace {
   /// @throw std::invalid_argument naming the parameter, its value and what is allowed; a
   /// core::NonFinite where the value is a number that is not finite.
   void requireValid() const;
+
+  /// Returns how the simulation is to step.
+  core::StepWish steps() const;
 
   /// Names each parameter that differs from `other`, and its value here; empty where none does.
   std::string differenceFrom(const Pace& other) const;

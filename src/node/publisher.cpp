@@ -6,6 +6,7 @@
 #include "node/faults.h"
 #include "node/kinds.h"
 #include "node/poses.h"
+#include "simulation/step_choice.h"
 #include "spherical_springs/measures.h"
 
 namespace spherical_springs {
@@ -95,13 +96,33 @@ void Publisher::publishStatusIfDue() {
   if (!news_.takeStatusChange() && !due) return;
   const Rest::Work work(rest_);
   try {
-    const Report now = report(runner_.snapshot());
+    runner_.choice();  // what is told is how the next step is done
+    const auto snapshot = runner_.snapshot();
+    tellOfChoice(snapshot);
+    const Report now = report(snapshot);
     status_.publish(now.status);
     if (diagnostics_.listenedTo()) diagnostics_.publish(now);
   } catch (...) {
     news_.statusChanged();  // to be told yet
     throw;
   }
+}
+
+/// Tells how steps are done for an accuracy, once they are done otherwise than before: after other
+/// news, but in the place of what was told of the last choice.
+void Publisher::tellOfChoice(const core::Runner::Snapshot& snapshot) {
+  const core::StepChoice& choice = snapshot.choice;
+  const bool is_told = snapshot.accuracy == told_accuracy_ && choice.method == told_.method &&
+                       choice.time_step == told_.time_step;
+  if (!is_told && snapshot.accuracy > 0) {
+    const News::Facts facts = news_.facts();
+    std::string news = facts.message_is_new ? facts.message : "";
+    if (!told_words_.empty()) news.resize(std::min(news.size(), news.find(told_words_)));
+    told_words_ = (news.empty() ? "" : "; ") + core::inWords(choice, snapshot.accuracy);
+    news_.tell(told_words_, news);
+  }
+  told_ = choice;
+  told_accuracy_ = snapshot.accuracy;
 }
 
 /// The time of the steps since the last call, as a share of the wall's.
@@ -128,8 +149,8 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
     kind.count(message) = system.springs<typename decltype(kind)::Spring>().size();
   });
   message.state = nameOf(snapshot);
-  message.integrator = core::nameOf(snapshot.method);
-  message.time_step = snapshot.time_step;
+  message.integrator = core::nameOf(snapshot.choice.method);
+  message.time_step = snapshot.choice.time_step;
   const double factor = realTimeFactor(snapshot.stepped_time);
   message.real_time_factor = message.state == "running" ? factor : 0;
   message.step_wall_time = snapshot.step_wall_time;
@@ -137,12 +158,12 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
 
   // Trial steps would take the processors from a relaxation, and mean nothing meanwhile.
   if (snapshot.activity != core::Activity::relaxing) {
-    measures_ =
-        core::measure(snapshot.plan, snapshot.method, snapshot.time_step, state, *snapshot.account);
+    measures_ = core::measure(snapshot.plan, snapshot.choice.method, snapshot.choice.time_step,
+                              state, *snapshot.account);
   }
   core::Measures measures = measures_;
   measures.max_torque = core::maxTorque(*snapshot.plan, state);
-  message.stable_time_step = std::min(Parameters::kLongestTimeStep, measures.stable_time_step);
+  message.stable_time_step = std::min(core::StepWish::kLongest, measures.stable_time_step);
   message.local_error = measures.local_error;
   message.error_rate = measures.error_rate;
   message.energy_error = measures.energy_error;
@@ -152,8 +173,11 @@ Report Publisher::report(const core::Runner::Snapshot& snapshot) {
   message.shortest_substep = measures.shortest_substep;
   message.max_torque = measures.max_torque;
   report.warning = measures.warning;
+  if (report.warning.empty() && !snapshot.choice.is_reached) {
+    report.warning = core::inWords(snapshot.choice, snapshot.accuracy);
+  }
   report.blown_up = measures.blown_up;
-  real_time_monitor_.expect(expected_factor_, snapshot.time_step);
+  real_time_monitor_.expect(expected_factor_, snapshot.choice.time_step);
   report.behind = real_time_monitor_.behind(message.state == "running", ros::Time::now().toSec(),
                                             snapshot.stepped_time);
   report.waits_for_clock = ros::Time::isSimTime() && ros::Time::now().isZero();

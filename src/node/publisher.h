@@ -43,6 +43,7 @@ class Publisher {
   void publishSample();
   void publishSampleIfMissing();
   void publishStatusIfDue();
+  void tellOfChoice(const core::Runner::Snapshot& snapshot);
   Report report(const core::Runner::Snapshot& snapshot);
   double realTimeFactor(double stepped_time);
 
@@ -66,6 +67,9 @@ class Publisher {
   double last_stepped_time_ = 0;
   RealTimeMonitor real_time_monitor_;
   core::Measures measures_;
+  core::StepChoice told_;
+  double told_accuracy_ = 0;  // [rad/s]
+  std::string told_words_;
 
   // Last, so that their callbacks end before what these use.
   ros::Publisher poses_, energies_, status_;

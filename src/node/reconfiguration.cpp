@@ -76,15 +76,18 @@ bool Reconfiguration::reconfigure(Service::Request& request, Service::Response& 
 
 void Reconfiguration::change(dynamic_reconfigure::Config& update) {
   const Pace now = present();
-  const Pace wanted = updated(now, update);
-  const std::string difference = wanted.differenceFrom(now);
-  if (difference.empty()) return;
+  Pace wanted = updated(now, update);
+  if (wanted.differenceFrom(now).empty()) return;
   wanted.requireValid();
   std::optional<bool> running;
   if (wanted.running != now.running) running = wanted.running;
-  runner_.stepBy(core::integrationMethod(wanted.integrator), wanted.time_step, running);
+  const bool is_overruled = wanted.accuracy > 0 && wanted.time_step != now.time_step;
+  std::string overruled = is_overruled ? "~accuracy chooses ~time_step, so that it is not set" : "";
+  wanted.time_step = runner_.stepBy(wanted.steps(), running).time_step;
   apply(wanted);
-  news_.tell(difference, "reconfigured: ");
+  const std::string difference = wanted.differenceFrom(now);
+  if (is_overruled && !difference.empty()) overruled = "; " + overruled;
+  news_.tell(difference + overruled, "reconfigured: ");
 }
 
 // Nothing here fails: the runner has the new values by now.
@@ -110,11 +113,15 @@ void Reconfiguration::refuse(const std::exception& fault) noexcept {
 Pace Reconfiguration::present() const {
   Pace now = pace_;
   now.running = runner_.isRunning();
+  if (now.accuracy > 0) {
+    now.time_step =
+        runner_.read([](const core::Simulation& s) { return s.lastChoice().time_step; });
+  }
   return now;
 }
 
 void Reconfiguration::showChanges() {
-  if (!shown_ || runner_.isRunning() != pace_.running) show();
+  if (!shown_ || !present().differenceFrom(pace_).empty()) show();
 }
 
 void Reconfiguration::show() {

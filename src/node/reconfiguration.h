@@ -48,7 +48,8 @@ class Reconfiguration {
   ros::NodeHandle node_;
 
   // Used by the one thread alone.
-  Pace pace_;  // `running` as it was shown; ~set_running may have changed it since
+  // `running`, and a time step that is chosen, as they were shown; they may have changed since.
+  Pace pace_;
   bool shown_ = false;
 
   // Last, so that their callbacks end before what these use.

@@ -18,7 +18,7 @@ Stepper::Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parame
     : runner_(runner),
       last_step_(ros::Time::now()),
       last_wall_step_(WallClock::now()),
-      step_clock_(parameters.time_step, parameters.real_time_factor),
+      step_clock_(parameters.real_time_factor),
       timer_(node.createTimer(ros::Duration(kPeriod),
                               loggingFaults("a tick is left out", [this] { tick(); }))),
       thread_([this] { stepAtEachTick(); }) {}
@@ -64,18 +64,18 @@ void Stepper::step() {
   // Under use_sim_time the clock is zero until its first message; that it then begins somewhere is
   // no time gone by.
   const double elapsed = last_step_.isZero() ? 0 : secondsBetween(last_step_, now);
-  const auto [due, time_step] = dueAfter(elapsed);
   const double wall_elapsed = std::chrono::duration<double>(wall_now - last_wall_step_).count();
   last_step_ = now;
   last_wall_step_ = wall_now;
-  // Where the runner has got another time step since, this tick's steps are dropped.
-  runner_.advance(due, time_step, std::max(kPeriod, wall_elapsed));
+  const auto [left, time_step] =
+      runner_.advance(dueAfter(elapsed), std::max(kPeriod, wall_elapsed));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  step_clock_.keep(left, time_step);
 }
 
-std::pair<std::uint64_t, double> Stepper::dueAfter(double elapsed) {
+double Stepper::dueAfter(double elapsed) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const std::uint64_t due = step_clock_.due(elapsed);
-  return {due, step_clock_.timeStep()};
+  return step_clock_.due(elapsed);
 }
 
 }  // namespace spherical_springs

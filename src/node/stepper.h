@@ -5,10 +5,8 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <mutex>
 #include <thread>
-#include <utility>
 
 #include "node/parameters.h"
 #include "node/step_clock.h"
@@ -25,7 +23,7 @@ class Stepper {
   Stepper(const ros::NodeHandle& node, core::Runner& runner, const Parameters& parameters);
   ~Stepper();
 
-  /// Goes on with another time step and factor, once the runner has the time step. For any thread.
+  /// Goes on with another time step and factor. For any thread.
   void setPace(const Pace& pace);
 
  private:
@@ -33,8 +31,8 @@ class Stepper {
   void stepAtEachTick();
   void step();
 
-  /// @return the steps due after `elapsed` [s], and their time step [s].
-  std::pair<std::uint64_t, double> dueAfter(double elapsed);
+  /// @return the simulated time that is due after `elapsed` [s].
+  double dueAfter(double elapsed);
 
   core::Runner& runner_;  // safe for many threads by itself
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
+#include "base/rounded.h"
+#include "simulation/error_rate.h"
 #include "spherical_springs/range.h"
 #include "stepping/evaluation.h"
 #include "stepping/stability.h"
@@ -71,17 +72,26 @@ double stableTimeStep(const System& system, IntegrationMethod method, const Poin
   return stabilityLimit(method) / highestFrequency(system, positions);
 }
 
-double localError(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
-                  double time_step, const State& state) {
-  if (state.positions.cols() == 0) return 0;
-  State whole = state;
-  makeIntegrator(plan, method, time_step)->step(whole);
-  State halves = state;
-  const auto half = makeIntegrator(plan, method, time_step / 2);
-  half->step(halves);
-  half->step(halves);
-  const double difference = (whole.positions - halves.positions).colwise().norm().maxCoeff();
-  return difference / (1 - std::pow(2., -orderOf(method)));
+namespace {
+
+/// How many particles and springs there are.
+double sizeOf(const System& system) {
+  double size = static_cast<double>(system.particleCount());
+  forEachKind([&](auto kind) {
+    size += static_cast<double>(system.springs<typename decltype(kind)::type>().size());
+  });
+  return size;
+}
+
+}  // namespace
+
+double errorRate(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
+                 double time_step, const State& state) {
+  // Trial steps are fewer for larger scenes, to take some milliseconds.
+  constexpr double kWork = 1e6;
+  constexpr int kFewest = 16, kMost = 256;
+  const double steps = std::clamp<double>(kWork / sizeOf(*plan->system()), kFewest, kMost);
+  return ErrorProbe(plan, state, static_cast<int>(steps)).errorRate(method, time_step);
 }
 
 namespace {
@@ -93,15 +103,6 @@ bool blownUp(const Measures& measures, IntegrationMethod method, const Energies&
   if (!std::isfinite(now.total())) return true;
   return !takesEnergyOut(method) && measures.energy_error > kAstray;
 }
-
-/// Rounds to two significant digits.
-double rounded(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", number);
-  return std::strtod(text, nullptr);
-}
-
-std::string roundedText(double number) { return toText(rounded(number)); }
 
 /// Returns a share in percent with two significant digits, below 1e6 % without an exponent.
 std::string percentOf(double share) {
@@ -152,13 +153,13 @@ Measures measure(const std::shared_ptr<const Plan>& plan, IntegrationMethod meth
   const System& system = *plan->system();
   Measures result;
   result.stable_time_step = stableTimeStep(system, method, state.positions);
-  result.local_error = localError(plan, method, time_step, state);
+  result.error_rate = errorRate(plan, method, time_step, state);
+  result.local_error = result.error_rate * time_step;
   const Energies now = energies(*plan, state);
   result.energy_error = account.energyError(now);
   result.angular_momentum_error = account.angularMomentumError(system, state);
   result.norm_error = normError(state);
   result.max_torque = maxTorque(*plan, state);
-  result.error_rate = result.local_error / time_step;
   result.divided_steps = account.dividedSteps(state);
   result.shortest_substep = state.shortest.substep;
   result.blown_up = blownUp(result, method, now);

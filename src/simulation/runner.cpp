@@ -69,16 +69,22 @@ bool Runner::isRunning() const {
   return running_;
 }
 
-void Runner::stepBy(IntegrationMethod method, double time_step, std::optional<bool> running) {
+StepChoice Runner::stepBy(const StepWish& wish, std::optional<bool> running) {
   const Lock lock(mutex_);
-  const Simulation::Settings& now = simulation_.settings();
-  const bool steps_change = method != now.method || time_step != now.time_step;
+  const bool wish_changes = !wish.asksTheSameAs(simulation_.settings());
   const bool running_changes = running && *running != isRunning();
-  if (running_changes || (steps_change && activity() == Activity::stepping)) requireIdle();
-  if (steps_change) simulation_.stepBy(method, time_step);
-  if (!running_changes) return;
-  const ControlLock control(control_);
-  running_ = *running;
+  if (running_changes || (wish_changes && activity() == Activity::stepping)) requireIdle();
+  if (wish_changes) simulation_.stepBy(wish);
+  if (running_changes) {
+    const ControlLock control(control_);
+    running_ = *running;
+  }
+  return simulation_.lastChoice();
+}
+
+StepChoice Runner::choice() {
+  const Lock lock(mutex_);
+  return activity() == Activity::relaxing ? simulation_.lastChoice() : simulation_.choice();
 }
 
 // One step shows how many more there is time for.
@@ -93,7 +99,7 @@ std::uint64_t Runner::stepForASlice(std::uint64_t most) {
     simulation_.step(steps);
     done += steps;
     const double taken = Seconds(Clock::now() - begin).count();
-    stepped_time_ += static_cast<double>(steps) * simulation_.settings().time_step;
+    stepped_time_ += static_cast<double>(steps) * simulation_.lastChoice().time_step;
     step_wall_time_ = std::max(taken / done, kShortest);
     left = Seconds(kSlice).count() - taken;
     steps = left > step_wall_time_ ? static_cast<std::uint64_t>(left / step_wall_time_) : 1;
@@ -101,20 +107,35 @@ std::uint64_t Runner::stepForASlice(std::uint64_t most) {
   return done;
 }
 
-std::uint64_t Runner::advance(std::uint64_t steps, double time_step, double wall_time) {
+namespace {
+
+/// Returns how many steps fit into a duration [s], but for what rounding makes of it.
+std::uint64_t wholeSteps(double duration, double time_step) {
+  constexpr double kMost = 1e15, kRounding = 1e-9;
+  return static_cast<std::uint64_t>(std::clamp(duration / time_step + kRounding, 0., kMost));
+}
+
+}  // namespace
+
+Runner::Left Runner::advance(double duration, double wall_time) {
   const auto end = Clock::now() + std::chrono::duration<double>(wall_time);
   const auto mayStep = [&] {
-    if (simulation_.settings().time_step != time_step) return false;
     const ControlLock control(control_);
     return running_ && activity_ == Activity::none;
   };
-  std::uint64_t done = 0;
-  while (done < steps && Clock::now() < end) {
+  double time_step = 0;
+  do {
     const Lock lock(mutex_);
+    time_step = simulation_.lastChoice().time_step;
     if (!mayStep()) break;
-    done += stepForASlice(steps - done);
-  }
-  return done;
+    const StepChoice& choice = simulation_.choice();
+    time_step = choice.time_step;
+    const std::uint64_t steps = wholeSteps(duration, time_step);
+    if (steps == 0) break;
+    const std::uint64_t done = stepForASlice(std::min(steps, choice.steps_to_review));
+    duration -= static_cast<double>(done) * time_step;
+  } while (Clock::now() < end);
+  return {duration, time_step};
 }
 
 /// Lets the follower of the work under way cancel it.
@@ -123,29 +144,30 @@ void Runner::ask(Follower<Progress>* follower, const Progress& progress) {
   if (follower != nullptr && !follower->goesOn(progress)) cancel();
 }
 
-std::uint64_t Runner::step(const StepCount& count, const std::function<void()>& report,
-                           StepFollower* follower) {
+Runner::Done Runner::step(const StepCount& count, const std::function<void()>& report,
+                          StepFollower* follower) {
   const Busy busy(*this, Activity::stepping);
-  const std::uint64_t steps = read(count);
-  const double time_step = read([](const Simulation& s) { return s.settings().time_step; });
-  State before = read([](const Simulation& s) { return s.state(); });
-  std::uint64_t done = 0;
-  const auto askFollower = [&] {
-    ask(follower, {done, before.time + static_cast<double>(done) * time_step});
-  };
+  Simulation::Moment before = read([](Simulation& s) { return s.moment(); });
+  const double begin = before.state.time;
+  Done done;
   try {
-    askFollower();
-    while (done < steps && !cancelled_) {
-      {
-        const Lock lock(mutex_);
-        done += stepForASlice(steps - done);
-      }
-      askFollower();
-    }
-    if (done < steps) {
-      if (follower != nullptr) follower->cancelled();
+    double time_step = 0;  // by which the steps were counted
+    std::uint64_t steps = 0;
+    while (true) {
+      ask(follower, {done.steps, begin + done.time});
       const Lock lock(mutex_);
-      simulation_.settle(Points(simulation_.state().positions));
+      const StepChoice& choice = simulation_.choice();
+      if (choice.time_step != time_step) steps = count(time_step = choice.time_step, done);
+      if (steps == 0) break;
+      if (cancelled_) {
+        if (follower != nullptr) follower->cancelled();
+        simulation_.settle(Points(simulation_.state().positions));
+        break;
+      }
+      const std::uint64_t part = stepForASlice(std::min(steps, choice.steps_to_review));
+      done.steps += part;
+      done.time += static_cast<double>(part) * time_step;
+      steps -= part;
     }
     report();
   } catch (...) {
@@ -211,8 +233,8 @@ Runner::Snapshot Runner::snapshot() {
     now.state = simulation_.state();
     now.plan = simulation_.plan();
     now.account = simulation_.begunAccount();
-    now.method = simulation_.settings().method;
-    now.time_step = simulation_.settings().time_step;
+    now.choice = simulation_.lastChoice();
+    now.accuracy = simulation_.settings().accuracy;
     now.step_wall_time = step_wall_time_;
     now.stepped_time = stepped_time_;
     revision = simulation_.revision();

@@ -104,29 +104,43 @@ class Runner {
 
   bool isRunning() const;
 
-  /// Chooses all at once, between two steps, the method and the time step [s] as
-  /// `Simulation::stepBy` does, and whether to run; no value of `running` leaves that as it is.
-  /// @throw Refusal where a step under way would go on with another method or time step, and as
-  /// `setRunning` does where `running` changes; std::invalid_argument as `Simulation::stepBy` does.
-  void stepBy(IntegrationMethod method, double time_step, std::optional<bool> running = {});
+  /// Says all at once, between two steps, how the steps to come are to be, as `Simulation::stepBy`
+  /// does, and whether to run; no value of `running` leaves that as it is.
+  /// @throw Refusal where a step under way would go on by another wish, and as `setRunning` does
+  /// where `running` changes; what `Simulation::stepBy` throws.
+  /// @return how the next step is done.
+  StepChoice stepBy(const StepWish& wish, std::optional<bool> running = {});
 
-  /// Up to `steps` steps of `time_step` [s] in the time that `wall_time` [s] allows, if running and
-  /// idle. None is done of another length, should another be chosen meanwhile.
-  /// @return how many were done.
-  std::uint64_t advance(std::uint64_t steps, double time_step, double wall_time);
+  /// Returns how the next step is done, chosen if it was not yet, unless a relaxation is under way.
+  /// @throw std::bad_alloc.
+  StepChoice choice();
 
-  /// Counts the steps to do. The method and the time step do not change any more until they are
-  /// done.
-  using StepCount = std::function<std::uint64_t(const Simulation&)>;
+  /// What `advance` has left of a duration, which is less than a step unless time was short.
+  struct Left {
+    double duration;   ///< [s]
+    double time_step;  ///< [s]
+  };
+  /// As many steps as fit into `duration` [s] and into the time that `wall_time` [s] allows, if
+  /// running and idle.
+  Left advance(double duration, double wall_time);
 
-  /// Exactly as many steps as `count` says, unless cancelled; then `report()`, while changes are
-  /// still refused. Where that throws, the steps are undone. `follower`: null for none.
-  /// @return how many were done. @throw Refusal unless paused and idle, and what `count` and
-  /// `report` throw.
-  std::uint64_t step(const StepCount& count, const std::function<void()>& report,
-                     StepFollower* follower = nullptr);
+  /// Steps done by a call.
+  struct Done {
+    std::uint64_t steps = 0;
+    double time = 0;  ///< simulated [s]
+  };
+  /// Counts the steps that are still to be done, of a time step [s]. Asked at first, and again
+  /// where the time step may have changed.
+  using StepCount = std::function<std::uint64_t(double time_step, const Done& done)>;
+
+  /// As many steps as `count` says, unless cancelled; then `report()`, while changes are still
+  /// refused. The wish does not change meanwhile. Where `count` or `report` throws, the steps are
+  /// undone. `follower`: null for none.
+  /// @throw Refusal unless paused and idle, and what `count` and `report` throw.
+  Done step(const StepCount& count, const std::function<void()>& report,
+            StepFollower* follower = nullptr);
   std::uint64_t step(std::uint64_t steps, const std::function<void()>& report) {
-    return step([steps](const Simulation&) { return steps; }, report);
+    return step([steps](double, const Done& done) { return steps - done.steps; }, report).steps;
   }
   std::uint64_t step(std::uint64_t steps) {
     return step(steps, [] {});
@@ -149,8 +163,8 @@ class Runner {
     State state;  ///< of a relaxation under way, the best so far
     std::shared_ptr<const Plan> plan;
     std::shared_ptr<Account> account;
-    IntegrationMethod method;
-    double time_step;  ///< [s]
+    StepChoice choice;  ///< of the last step, or of the next one
+    double accuracy;    ///< that it was made for [rad/s]; 0: none
     bool running;
     Activity activity;
     double relax_progress;  ///< 0 to 1 while relaxing

@@ -1,9 +1,11 @@
 #include "spherical_springs/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "simulation/step_choice.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
@@ -32,8 +34,31 @@ bool anyOf(const SpringIds& ids) {
 
 }  // namespace
 
+void StepWish::requireValid() const {
+  if (!(time_step > 0 && std::isfinite(time_step))) {
+    throw std::invalid_argument("time_step is " + toText(time_step) + "; allowed: above 0 [s]");
+  }
+  if (!(accuracy >= 0 && std::isfinite(accuracy))) {
+    throw std::invalid_argument("accuracy is " + toText(accuracy) +
+                                "; allowed: 0 (off) or above [rad/s]");
+  }
+  if (chooses_method && accuracy == 0) {
+    throw std::invalid_argument(
+        "accuracy is 0, by which no method can be chosen; allowed: above 0 [rad/s], or a method");
+  }
+}
+
+bool StepWish::asksTheSameAs(const StepWish& other) const {
+  return method == other.method && accuracy == other.accuracy &&
+         chooses_method == other.chooses_method && (accuracy > 0 || time_step == other.time_step);
+}
+
 Simulation::Simulation(const Settings& settings)
-    : settings_(settings), scene_(settings.limits), state_(startOf(scene_)) {}
+    : settings_(settings), scene_(settings.limits), state_(startOf(scene_)) {
+  settings_.requireValid();
+  choice_.method = settings_.method;
+  choice_.time_step = settings_.time_step;
+}
 
 const State& Simulation::state() const {
   if (integrator_is_ahead_) integrator_->give(state_);
@@ -56,6 +81,7 @@ void Simulation::moved() {
   state.divided_steps = 0;
   state.shortest = {};
   account_.reset();
+  choice_holds_ = false;
 }
 
 /// Follows a change of numbers of particles or springs, under which these join as before.
@@ -152,27 +178,63 @@ void Simulation::beginAt(State start) {
   topologyChanged();
 }
 
-void Simulation::stepBy(IntegrationMethod method, double time_step) {
-  if (!(time_step > 0 && std::isfinite(time_step))) {
-    throw std::invalid_argument("time_step is " + toText(time_step) + "; allowed: above 0 [s]");
+// Chosen at once, so that what fails leaves all as it was.
+void Simulation::stepBy(const StepWish& wish) {
+  wish.requireValid();
+  const StepChoice choice = chosenFor(wish);
+  static_cast<StepWish&>(settings_) = wish;
+  adopt(choice);
+}
+
+const StepChoice& Simulation::choice() {
+  if (!choice_holds_) {
+    adopt(chosenFor(settings_));
+  } else if (choice_.steps_to_review == 0) {
+    adopt(reviewedSteps(plan(), settings_, state(), choice_));
   }
-  state();
-  integrator_has_state_ = false;
-  integrator_.reset();
-  settings_.method = method;
-  settings_.time_step = time_step;
+  return choice_;
+}
+
+StepChoice Simulation::chosenFor(const StepWish& wish) {
+  if (wish.accuracy == 0) return {wish.method, wish.time_step};
+  return chooseSteps(plan(), wish, state());
+}
+
+void Simulation::adopt(const StepChoice& choice) {
+  if (choice.method != choice_.method || choice.time_step != choice_.time_step) {
+    state();
+    integrator_has_state_ = false;
+    integrator_.reset();
+  }
+  choice_ = choice;
+  choice_holds_ = true;
 }
 
 void Simulation::step(std::uint64_t steps) {
   account();  // begins before anything moves
-  if (!integrator_) {
-    integrator_ = makeIntegrator(plan(), settings_.method, settings_.time_step);
+  if (steps <= choice().steps_to_review) return stepAtOnce(steps);
+  Moment before = moment();
+  try {
+    while (steps > 0) {
+      const std::uint64_t part = std::min(steps, choice().steps_to_review);
+      stepAtOnce(part);
+      steps -= part;
+    }
+  } catch (...) {
+    restore(std::move(before));
+    throw;
   }
+}
+
+/// Steps up to the next review.
+void Simulation::stepAtOnce(std::uint64_t steps) {
+  if (!integrator_) integrator_ = makeIntegrator(plan(), choice_.method, choice_.time_step);
   if (!integrator_has_state_) integrator_->take(state_);
   integrator_has_state_ = true;
   integrator_->advance(steps);
   integrator_is_ahead_ = true;
   ++revision_;
+  if (settings_.accuracy > 0) choice_.steps_to_review -= steps;
 }
 
 void Simulation::settle(const Points& positions) {
@@ -183,9 +245,16 @@ void Simulation::settle(const Points& positions) {
   moved();
 }
 
-void Simulation::restore(State state) {
-  state_ = std::move(state);
-  integrator_is_ahead_ = integrator_has_state_ = false;
+Simulation::Moment Simulation::moment() {
+  const StepChoice choice = this->choice();
+  return {state(), choice};
+}
+
+void Simulation::restore(Moment moment) {
+  integrator_is_ahead_ = false;
+  adopt(moment.choice);
+  state_ = std::move(moment.state);
+  integrator_has_state_ = false;
   ++revision_;
 }
 

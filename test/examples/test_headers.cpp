@@ -202,6 +202,20 @@ TEST(Example, OfASimulation) {
   EXPECT_EQ(positions.col(1), Vector3(0, 1, 0));
 }
 
+TEST(Example, OfAnAccuracy) {
+  //! [accuracy]
+  Simulation::Settings settings;
+  settings.accuracy = 1e-6;        // [rad/s]
+  settings.chooses_method = true;  // verlet or fourth_order
+  Simulation simulation(settings);
+  simulation.load({pair(), 0});
+  const double time_step = simulation.choice().time_step;  // [s]
+  while (simulation.state().time < 10) simulation.step();
+  //! [accuracy]
+  EXPECT_GT(time_step, 0.01);
+  EXPECT_TRUE(simulation.choice().is_reached);
+}
+
 TEST(Example, OfARelaxation) {
   const Scene scene = pair();
   const Points start = stateOf(scene).positions;

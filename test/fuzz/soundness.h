@@ -37,8 +37,8 @@ inline void requireSound(Simulation& simulation) {
 
 /// Also of what ~status shows.
 inline void requireSoundMeasures(Simulation& simulation) {
-  const auto settings = simulation.settings();
-  const Measures measures = measure(simulation.plan(), settings.method, settings.time_step,
+  const StepChoice choice = simulation.choice();
+  const Measures measures = measure(simulation.plan(), choice.method, choice.time_step,
                                     simulation.state(), *simulation.account());
   require(!std::isnan(measures.stable_time_step), "the stable time step is a number");
   for (const double value :

@@ -78,11 +78,36 @@ TEST(Pace, NamesWhatIsBeyondThem) {
   pace.integrator = "leapfrog";
   EXPECT_EQ(refusalOf(pace),
             "parameter ~integrator is 'leapfrog'; allowed: euler, verlet, fourth_order, "
-            "implicit_euler");
+            "implicit_euler, automatic");
+  EXPECT_EQ(refusalOf(paceWith(&Pace::accuracy, -1e-6)),
+            "parameter ~accuracy is -1e-06; allowed: 0 (off) to 1e6 [rad/s]");
+}
+
+TEST(Pace, NeedsAnAccuracyToChooseAnIntegrator) {
+  Pace pace;
+  pace.integrator = "automatic";
+  EXPECT_EQ(refusalOf(pace),
+            "parameter ~integrator is 'automatic' while ~accuracy is 0; allowed: 'automatic' with "
+            "an ~accuracy above 0 [rad/s], or one of the other integrators");
+  pace.accuracy = 1e-300;
+  EXPECT_EQ(refusalOf(pace), "");
+  EXPECT_TRUE(pace.steps().chooses_method);
+  EXPECT_EQ(pace.steps().accuracy, 1e-300);
+}
+
+TEST(Pace, SaysHowToStep) {
+  Pace pace;
+  pace.time_step = 0.25;
+  pace.integrator = "euler";
+  EXPECT_EQ(pace.steps().method, core::IntegrationMethod::euler);
+  EXPECT_EQ(pace.steps().time_step, 0.25);
+  EXPECT_EQ(pace.steps().accuracy, 0);
+  EXPECT_FALSE(pace.steps().chooses_method);
 }
 
 TEST(Pace, TellsNumbersThatAreNotFiniteFromOthers) {
   for (const double value : {kNaN, kInfinity, -kInfinity}) {
+    EXPECT_THROW(paceWith(&Pace::accuracy, value).requireValid(), core::NonFinite);
     EXPECT_THROW(paceWith(&Pace::time_step, value).requireValid(), core::NonFinite);
   }
   EXPECT_EQ(refusalOf(paceWith(&Pace::publish_rate, kNaN)),

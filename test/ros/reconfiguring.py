@@ -9,7 +9,7 @@ from spherical_springs.msg import Status
 
 from node_client import LONG, NodeProcess, wait_until
 
-DEFAULTS = {'time_step': 0.001, 'integrator': 'verlet', 'real_time_factor': 1.0,
+DEFAULTS = {'time_step': 0.001, 'integrator': 'verlet', 'accuracy': 0.0, 'real_time_factor': 1.0,
             'publish_rate': 30.0, 'running': True}
 
 

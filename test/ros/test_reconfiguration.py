@@ -1,6 +1,7 @@
 """Each parameter that changes while the node runs: what it does, and which values are refused."""
 
 import math
+import re
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -18,12 +19,14 @@ NAN, INF = math.nan, math.inf
 WRONG = {
     'time_step': (0, -1, NAN, INF, -INF, 1e300, 1e-13),
     'integrator': ('leapfrog', 'Verlet', '', 9999 * 'x'),
+    'accuracy': (-1e-6, NAN, INF, -INF, 1e300),
     'real_time_factor': (0, -1, NAN, INF, 2e6),
     'publish_rate': (0, -30, NAN, INF, 20000),
 }
 ALLOWED = {
     'time_step': '1e-12 to 1e6 [s]',
-    'integrator': 'euler, verlet, fourth_order, implicit_euler',
+    'integrator': 'euler, verlet, fourth_order, implicit_euler, automatic',
+    'accuracy': '0 (off) to 1e6 [rad/s]',
     'real_time_factor': '1e-6 to 1e6',
     'publish_rate': '0.001 to 10000 [Hz]',
 }
@@ -149,7 +152,7 @@ class TestRefusals(ReconfigurationTest):
         for name, wrong in WRONG.items():
             for value in wrong:
                 shown = '%.16g' % value if isinstance(value, (int, float)) else value[:50]
-                allowed = ALLOWED[name].replace('[', '\\[').replace(']', '\\]')
+                allowed = re.escape(ALLOWED[name])
                 self.assert_refuses(
                     'parameter ~%s is .*%s.*; allowed: %s' % (
                         name, shown.replace('+', '\\+'), allowed), **{name: value})

@@ -11,7 +11,8 @@ NOT_A_NUMBER = ('fast', 'true')
 
 WRONG = {
     'time_step': ('0', '-1', 'nan', 'inf', '1e+300', *NOT_A_NUMBER),
-    'integrator': ('leapfrog', '2', 'true', 'Verlet'),
+    'integrator': ('leapfrog', '2', 'true', 'Verlet', 'automatic'),
+    'accuracy': ('-1', 'nan', 'inf', '1e+300', *NOT_A_NUMBER),
     'publish_rate': ('0', '-30', 'nan', 'inf', *NOT_A_NUMBER),
     'real_time_factor': ('0', '-1', 'nan', 'inf', *NOT_A_NUMBER),
     'running': ('maybe', '1', '0.5'),

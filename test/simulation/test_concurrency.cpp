@@ -78,7 +78,7 @@ TEST_P(Concurrency, OfServicesTimersTopicsRelaxationAndCancelling) {
     ASSERT_TRUE(std::isfinite(energies(*now.plan, now.state).total()));
   });
   // The timer.
-  keepCalling([this] { runner_.advance(GetParam().steps, 0.001, 0.01); });
+  keepCalling([this] { runner_.advance(0.001 * GetParam().steps, 0.01); });
   // Clients.
   keepCalling([this] { runner_.read([](const Simulation& s) { return s.presentScene(); }); });
   for (const bool running : {false, true}) {

@@ -1,6 +1,8 @@
 // What is told of how well a simulation keeps what it should keep.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -45,11 +47,62 @@ TEST(Measures, CompareTheEnergyWithWhatItWas) {
   EXPECT_TRUE(pair.measures(0.01).blown_up);
 }
 
-TEST(Measures, HaveTheErrorOfASecond) {
+TEST(Measures, HaveTheErrorOfAStep) {
   Pair pair;
   const Measures measures = pair.measures(0.01);
   EXPECT_GT(measures.local_error, 0);
-  EXPECT_DOUBLE_EQ(measures.error_rate, measures.local_error / 0.01);
+  EXPECT_DOUBLE_EQ(measures.local_error, measures.error_rate * 0.01);
+}
+
+/// A pair that swings by 0.3 rad at sqrt(2) rad/s, at a share of its period.
+State swinging(double share) {
+  const double phase = 2 * kPi * share, half = (1 + 0.3 * std::cos(phase)) / 2;
+  State state;
+  state.positions.resize(3, 2);
+  state.positions << Vector3(std::cos(half), -std::sin(half), 0),
+      Vector3(std::cos(half), std::sin(half), 0);
+  state.angular_velocities.resize(3, 2);
+  const Vector3 velocity(0, 0, 0.15 * std::sqrt(2.) * std::sin(phase));
+  state.angular_velocities << velocity, -velocity;
+  return state;
+}
+
+/// The largest distance of a pair that begins at an end of its swing from where it should be, by
+/// the time [rad/s].
+double errorRateOfASwing(const Pair& pair, IntegrationMethod method, double time_step) {
+  const auto integrator = makeIntegrator(pair.plan, method, time_step);
+  State state = swinging(0);
+  double largest = 0;
+  while (state.time < 20) {
+    integrator->step(state);
+    const State exact = swinging(state.time / (std::sqrt(2.) * kPi));
+    largest = std::max(largest, (state.positions - exact.positions).colwise().norm().maxCoeff());
+  }
+  return largest / state.time;
+}
+
+// At the end of a swing too, where an error of the phase is none of the position.
+TEST(Measures, HaveTheErrorRateWhereverASwingIs) {
+  const Pair pair;
+  for (const IntegrationMethod method :
+       {IntegrationMethod::euler, IntegrationMethod::verlet, IntegrationMethod::fourth_order}) {
+    for (const double time_step : {0.3, 0.05, 0.005}) {
+      const double expected = errorRateOfASwing(pair, method, time_step);
+      for (const double share : {0., 0.1, 0.25, 0.4, 0.5}) {
+        const double estimate = errorRate(pair.plan, method, time_step, swinging(share));
+        EXPECT_GT(estimate, expected / 4) << nameOf(method) << " " << time_step << " " << share;
+        EXPECT_LT(estimate, expected * 4) << nameOf(method) << " " << time_step << " " << share;
+      }
+    }
+  }
+}
+
+TEST(Measures, HaveNoErrorWhereNothingMoves) {
+  Pair pair;
+  pair.state.positions.col(1) = Vector3(std::cos(1.), std::sin(1.), 0);
+  EXPECT_LT(errorRate(pair.plan, IntegrationMethod::verlet, 0.1, pair.state), 1e-15);
+  const auto empty = std::make_shared<const Plan>(Scene(), System::Options());
+  EXPECT_EQ(errorRate(empty, IntegrationMethod::verlet, 0.1, testing::stateOf(Scene())), 0);
 }
 
 TEST(Measures, HaveTheShareOfDividedStepsOfTheAccount) {

@@ -61,7 +61,7 @@ TEST_P(BusyRunner, AnswersReadersRefusesChangesAndEndsAtRest) {
   EXPECT_THROW(runner_.setRunning(true), Refusal);
   EXPECT_THROW(runner_.step(1), Refusal);
   EXPECT_THROW(runner_.relax({}), Refusal);
-  EXPECT_EQ(runner_.advance(10, 0.001, 1), 0);
+  EXPECT_EQ(runner_.advance(0.01, 1).duration, 0.01);
   EXPECT_EQ(runner_.snapshot().activity, GetParam());
 
   EXPECT_TRUE(runner_.cancel());
@@ -87,26 +87,26 @@ TEST(Runner, StepsExactlyWhilePausedOnly) {
   runner.setRunning(false);
   EXPECT_EQ(runner.step(3), 3);
   EXPECT_EQ(runner.snapshot().state.steps, 3);
-  EXPECT_EQ(runner.advance(3, 0.001, 1), 0);
+  EXPECT_EQ(runner.advance(0.003, 1).duration, 0.003);
   runner.setRunning(true);
-  EXPECT_EQ(runner.advance(3, 0.001, 1), 3);
+  EXPECT_NEAR(runner.advance(0.003, 1).duration, 0, 1e-15);
 }
 
 TEST_P(BusyRunner, RefusesToGoOnWithAStepByOtherSteps) {
-  const auto change = [&] { runner_.stepBy(IntegrationMethod::euler, 0.01); };
+  const auto change = [&] { runner_.stepBy({IntegrationMethod::euler, 0.01}); };
   if (GetParam() == Activity::stepping) {
     EXPECT_THROW(change(), Refusal);
-    EXPECT_EQ(runner_.snapshot().method, IntegrationMethod::verlet);
-    EXPECT_EQ(runner_.snapshot().time_step, 0.001);
+    EXPECT_EQ(runner_.snapshot().choice.method, IntegrationMethod::verlet);
+    EXPECT_EQ(runner_.snapshot().choice.time_step, 0.001);
   } else {
     change();
-    EXPECT_EQ(runner_.snapshot().method, IntegrationMethod::euler);
-    EXPECT_EQ(runner_.snapshot().time_step, 0.01);
+    EXPECT_EQ(runner_.snapshot().choice.method, IntegrationMethod::euler);
+    EXPECT_EQ(runner_.snapshot().choice.time_step, 0.01);
   }
   const auto now = runner_.snapshot();
-  EXPECT_THROW(runner_.stepBy(now.method, 1, true), Refusal);
-  EXPECT_EQ(runner_.snapshot().time_step, now.time_step);
-  runner_.stepBy(now.method, now.time_step, false);  // as it is
+  EXPECT_THROW(runner_.stepBy({now.choice.method, 1}, true), Refusal);
+  EXPECT_EQ(runner_.snapshot().choice.time_step, now.choice.time_step);
+  runner_.stepBy({now.choice.method, now.choice.time_step}, false);  // as it is
   runner_.cancel();
   work_.get();
 }
@@ -121,7 +121,7 @@ TEST(Runner, UndoesStepsThatCannotBeReportedBeforeAnyoneChangesTheScene) {
     EXPECT_EQ(runner.snapshot().state.steps, 8);
     EXPECT_NE(runner.snapshot().state.positions, before.positions);
     EXPECT_THROW(runner.change([](Simulation& s) { s.clear(); }), Refusal);
-    EXPECT_EQ(runner.advance(1, 0.001, 1), 0);
+    EXPECT_EQ(runner.advance(0.001, 1).duration, 0.001);
     throw std::bad_alloc();
   };
   EXPECT_THROW(runner.step(5, report), std::bad_alloc);

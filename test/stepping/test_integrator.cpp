@@ -245,22 +245,6 @@ TEST_P(Scheme, BearsAnyDamping) {
   EXPECT_TRUE(end.state.positions.allFinite());
 }
 
-TEST_P(Scheme, LocalErrorIsWithinAFactorOf3) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Scene scene = reportScene(seed, 0.1);
-    const Trajectory start(scene, GetParam(), 1, 0);
-    const double step =
-        0.1 * stableTimeStep(start.system(), IntegrationMethod::verlet, start.state.positions);
-    const Trajectory one(scene, GetParam(), step, 1);
-    const Trajectory exact(scene, "fourth_order", step / 64, 64);
-    const double error = largestDistance(one.state.positions, exact.state.positions);
-    const double estimate =
-        localError(start.plan, integrationMethod(GetParam()), step, start.state);
-    EXPECT_GT(estimate, error / 3) << seed;
-    EXPECT_LT(estimate, error * 3) << seed;
-  }
-}
-
 TEST(StableTimeStep, OfAPairIsTwoOverItsFrequency) {
   const Scene scene = pair(3, 0);
   const System system(scene, {});
