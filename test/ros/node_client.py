@@ -75,10 +75,12 @@ class NodeClient:
 
     def _method(self, service, service_type):
         def call(*args, **fields):
-            # Those given by position are the first ones; rospy would want all of them.
-            fields.update(zip(service_type._request_class.__slots__, args))
+            if args and not hasattr(args[0], 'serialize'):
+                # Those given by position are the first ones; rospy would want all of them.
+                fields.update(zip(service_type._request_class.__slots__, args))
+                args = ()
             # Each call has a proxy of its own, as threads may not share one.
-            response = rospy.ServiceProxy(self.name + '/' + service, service_type)(**fields)
+            response = rospy.ServiceProxy(self.name + '/' + service, service_type)(*args, **fields)
             if not response.success:
                 raise Refused(response.message)
             return response

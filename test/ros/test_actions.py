@@ -1,4 +1,4 @@
-"""The actions ~relax and ~step: the services of these names for clients that do not wait in a call."""
+"""The actions ~relax and ~step, which do what the services of these names do."""
 
 import math
 import unittest
