@@ -211,7 +211,6 @@ class WorkServer {
       under_way.fail(reasonOf(fault));
       return;
     }
-    news_.sceneChanged();
     under_way.end(answer.response);
   }
 

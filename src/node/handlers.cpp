@@ -262,6 +262,7 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
   answer.reserve(kMessageRoom);
   news_.statusChanged();
   const auto result = runner_.relax(options, follower);
+  news_.sceneChanged();
   response.converged = result.converged;
   response.iterations = result.iterations;
   response.wall_time = secondsSince(begin);

@@ -24,20 +24,20 @@ inline std::optional<double> numberIn(const std::string& text) {
 
 /// Returns a parameter's value as the type `Value`; none where it is of another type.
 template <class Value>
-std::optional<Value> valueIn(XmlRpc::XmlRpcValue raw);
+std::optional<Value> valueIn(const XmlRpc::XmlRpcValue& raw);
 
 template <>
-inline std::optional<double> valueIn(XmlRpc::XmlRpcValue raw) {
-  if (raw.getType() == XmlRpc::XmlRpcValue::TypeDouble) return static_cast<double>(raw);
-  if (raw.getType() == XmlRpc::XmlRpcValue::TypeInt) return static_cast<int>(raw);
+inline std::optional<double> valueIn(const XmlRpc::XmlRpcValue& raw) {
+  if (raw.getType() == XmlRpc::XmlRpcValue::TypeDouble) return static_cast<const double&>(raw);
+  if (raw.getType() == XmlRpc::XmlRpcValue::TypeInt) return static_cast<const int&>(raw);
   if (raw.getType() == XmlRpc::XmlRpcValue::TypeString) {
-    return numberIn(static_cast<std::string>(raw));
+    return numberIn(static_cast<const std::string&>(raw));
   }
   return {};
 }
 
 template <>
-inline std::optional<int> valueIn(XmlRpc::XmlRpcValue raw) {
+inline std::optional<int> valueIn(const XmlRpc::XmlRpcValue& raw) {
   const std::optional<double> number = valueIn<double>(raw);
   constexpr double kMost = std::numeric_limits<int>::max();
   if (!number || std::floor(*number) != *number || std::abs(*number) > kMost) return {};
@@ -45,19 +45,19 @@ inline std::optional<int> valueIn(XmlRpc::XmlRpcValue raw) {
 }
 
 template <>
-inline std::optional<bool> valueIn(XmlRpc::XmlRpcValue raw) {
-  if (raw.getType() == XmlRpc::XmlRpcValue::TypeBoolean) return static_cast<bool>(raw);
+inline std::optional<bool> valueIn(const XmlRpc::XmlRpcValue& raw) {
+  if (raw.getType() == XmlRpc::XmlRpcValue::TypeBoolean) return static_cast<const bool&>(raw);
   if (raw.getType() != XmlRpc::XmlRpcValue::TypeString) return {};
-  const auto text = static_cast<std::string>(raw);
+  const std::string& text = raw;
   if (text == "true" || text == "True") return true;
   if (text == "false" || text == "False") return false;
   return {};
 }
 
 template <>
-inline std::optional<std::string> valueIn(XmlRpc::XmlRpcValue raw) {
+inline std::optional<std::string> valueIn(const XmlRpc::XmlRpcValue& raw) {
   if (raw.getType() != XmlRpc::XmlRpcValue::TypeString) return {};
-  return static_cast<std::string>(raw);
+  return static_cast<const std::string&>(raw);
 }
 
 /// Returns words for a value that `valueIn<Value>` does not take: how its type is wrong, or nothing
