@@ -38,6 +38,16 @@ Pace updated(const Pace& pace, dynamic_reconfigure::Config& update) {
   return wanted;
 }
 
+/// Names what changes; which time step an accuracy chooses is told by ~status.
+std::string wordsFor(Pace wanted, const Pace& now) {
+  const bool is_overruled = wanted.accuracy > 0 && wanted.time_step != now.time_step;
+  if (!is_overruled) return wanted.differenceFrom(now);
+  wanted.time_step = now.time_step;
+  std::string words = wanted.differenceFrom(now);
+  if (!words.empty()) words += "; ";
+  return words + "~accuracy chooses ~time_step, so that it is not set";
+}
+
 }  // namespace
 
 Reconfiguration::Reconfiguration(const ros::NodeHandle& node, core::Runner& runner, News& news,
@@ -81,13 +91,10 @@ void Reconfiguration::change(dynamic_reconfigure::Config& update) {
   wanted.requireValid();
   std::optional<bool> running;
   if (wanted.running != now.running) running = wanted.running;
-  const bool is_overruled = wanted.accuracy > 0 && wanted.time_step != now.time_step;
-  std::string overruled = is_overruled ? "~accuracy chooses ~time_step, so that it is not set" : "";
+  const std::string words = wordsFor(wanted, now);
   wanted.time_step = runner_.stepBy(wanted.steps(), running).time_step;
   apply(wanted);
-  const std::string difference = wanted.differenceFrom(now);
-  if (is_overruled && !difference.empty()) overruled = "; " + overruled;
-  news_.tell(difference + overruled, "reconfigured: ");
+  news_.tell(words, "reconfigured: ");
 }
 
 // Nothing here fails: the runner has the new values by now.

@@ -74,24 +74,25 @@ double stableTimeStep(const System& system, IntegrationMethod method, const Poin
 
 namespace {
 
-/// How many particles and springs there are.
-double sizeOf(const System& system) {
+/// Returns how many steps a window of trial steps may have, to take some milliseconds: fewer in
+/// larger scenes, and few where each is a minimisation.
+int mostTrialSteps(const System& system, IntegrationMethod method) {
+  constexpr double kWork = 1e6;  // particles and springs, by steps
+  constexpr int kFewest = 16, kMost = 256, kImplicit = 8;
+  if (method == IntegrationMethod::implicit_euler) return kImplicit;
   double size = static_cast<double>(system.particleCount());
   forEachKind([&](auto kind) {
     size += static_cast<double>(system.springs<typename decltype(kind)::type>().size());
   });
-  return size;
+  return static_cast<int>(std::clamp<double>(kWork / size, kFewest, kMost));
 }
 
 }  // namespace
 
 double errorRate(const std::shared_ptr<const Plan>& plan, IntegrationMethod method,
                  double time_step, const State& state) {
-  // Trial steps are fewer for larger scenes, to take some milliseconds.
-  constexpr double kWork = 1e6;
-  constexpr int kFewest = 16, kMost = 256;
-  const double steps = std::clamp<double>(kWork / sizeOf(*plan->system()), kFewest, kMost);
-  return ErrorProbe(plan, state, static_cast<int>(steps)).errorRate(method, time_step);
+  const int most_steps = mostTrialSteps(*plan->system(), method);
+  return ErrorProbe(plan, state, most_steps).errorRate(method, time_step);
 }
 
 namespace {

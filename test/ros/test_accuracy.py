@@ -92,6 +92,7 @@ class TestAccuracy(ReconfigurationTest):
         self.assert_refuses("parameter ~integrator is 'automatic' while ~accuracy is 0",
                             integrator='automatic')
         self.reconfigure(integrator='automatic', accuracy=ACCURACY)
+        wait_until(lambda: self.reconfigure.shown()['accuracy'] == ACCURACY)
         self.assert_refuses("parameter ~integrator is 'automatic' while ~accuracy is 0",
                             accuracy=0.0)
 
