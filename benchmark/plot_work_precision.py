@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the work-precision diagram and prints the table that says which integrator to take."""
+"""Draws the work-precision diagram and prints what an accuracy gets, and which fixed steps get it."""
 import csv
 import sys
 from collections import defaultdict
@@ -31,7 +31,7 @@ def read_steps(path):
                 continue
             rows[row['scene']][row['method']].append(
                 {name: float(row[name]) for name in
-                 ('time_step', 'wall_per_second', 'trajectory_error', 'energy_error')})
+                 ('time_step', 'time_per_second', 'trajectory_error', 'energy_error')})
     return rows, references
 
 
@@ -39,15 +39,24 @@ def read_relaxation(path):
     torques = defaultdict(list)
     with open(path, newline='') as file:
         for row in csv.DictReader(file):
-            torques[row['method']].append((float(row['wall_time']), float(row['max_torque'])))
+            torques[row['method']].append((float(row['time']), float(row['max_torque'])))
     return torques
+
+
+def read_accuracy(path):
+    """Rows of each scene by the error asked for."""
+    rows = defaultdict(dict)
+    with open(path, newline='') as file:
+        for row in csv.DictReader(file):
+            rows[row['scene']][float(row['asked'])] = row
+    return rows
 
 
 def draw_errors(axes, rows, field, floor):
     for method, points in rows.items():
         if field == 'energy_error' and method == 'report':
             continue  # it keeps no account
-        shown = [(p['wall_per_second'], p[field]) for p in points if p[field] > 0]
+        shown = [(p['time_per_second'], p[field]) for p in points if p[field] > 0]
         if shown:
             axes.loglog(*zip(*shown), marker=MARKERS[method], color=COLOURS[method],
                         markersize=4, linewidth=1, label=method)
@@ -61,42 +70,58 @@ def draw_relaxation(axes, torques):
         axes.loglog(*zip(*points), marker=MARKERS[method], color=COLOURS[method],
                     markersize=3, linewidth=1, label=method)
     axes.set_title('relaxing the mesh')
-    axes.set_xlabel('wall time [s]')
+    axes.set_xlabel('processor time [s]')
     axes.set_ylabel('largest torque [N m]')
     axes.legend()
     axes.grid(True, which='major', linewidth=0.3)
 
 
-def draw(rows, references, torques, path):
-    """Scenes side by side, errors of positions above those of the energy; then the relaxation."""
+def draw_accuracy(axes, accuracy):
+    for scene, rows in accuracy.items():
+        axes.loglog(list(rows), [float(row['got']) for row in rows.values()], marker='.',
+                    linewidth=1, label=scene)
+    asked = sorted(next(iter(accuracy.values())))
+    axes.fill_between(asked, [a / 5 for a in asked], [5 * a for a in asked], color='0.9')
+    axes.set_title('automatic steps')
+    axes.set_xlabel('error asked for [rad/s]')
+    axes.set_ylabel('error got [rad/s]')
+    axes.legend(fontsize=9)
+    axes.grid(True, which='major', linewidth=0.3)
+
+
+def draw(rows, references, accuracy, torques, path):
+    """Scenes side by side, errors of positions above those of the energy; then automatic steps and
+    the relaxation.
+    """
     plt.rcParams['font.size'] = 12
-    blocks = -(-(len(rows) + 1) // COLUMNS)
-    figure, grid = plt.subplots(2 * blocks, COLUMNS, figsize=(4 * COLUMNS, 6.4 * blocks),
-                                constrained_layout=True)
+    blocks = -(-len(rows) // COLUMNS)
+    figure, grid = plt.subplots(2 * blocks + 1, COLUMNS, constrained_layout=True,
+                                figsize=(4 * COLUMNS, 3.2 * (2 * blocks + 1)))
     columns = [grid[2 * block:2 * block + 2, column]
                for block in range(blocks) for column in range(COLUMNS)]
     for (above, below), (scene, methods) in zip(columns, rows.items()):
         draw_errors(above, methods, 'trajectory_error', references[scene])
         draw_errors(below, methods, 'energy_error', 1e-16)
         above.set_title(scene)
-        below.set_xlabel('wall time / simulated time')
+        below.set_xlabel('processor time / simulated time')
     for above, below in columns[:len(rows):COLUMNS]:
         above.set_ylabel('error of the positions [rad]')
         below.set_ylabel('relative error of the energy')
-    draw_relaxation(columns[len(rows)][0], torques)
-    for axes in [columns[len(rows)][1], *sum(map(list, columns[len(rows) + 1:]), [])]:
+    draw_accuracy(grid[-1][0], accuracy)
+    draw_relaxation(grid[-1][1], torques)
+    for axes in [grid[-1][2], *sum(map(list, columns[len(rows):]), [])]:
         axes.axis('off')
     handles = {}
     for above, _ in columns[:len(rows)]:
         handles.update(zip(*reversed(above.get_legend_handles_labels())))
-    columns[len(rows)][1].legend(handles.values(), handles.keys(), loc='center', frameon=False,
-                                 title='all other diagrams')
+    grid[-1][2].legend(handles.values(), handles.keys(), loc='center', frameon=False,
+                       title='the diagrams above')
     figure.savefig(path, dpi=110)
 
 
 def cheapest(methods, error):
-    """The method, step and wall time that reach an error for the least time."""
-    candidates = [(p['wall_per_second'], method, p['time_step'])
+    """The method, step and time that reach an error for the least time."""
+    candidates = [(p['time_per_second'], method, p['time_step'])
                   for method in INTEGRATORS for p in methods.get(method, ())
                   if p['trajectory_error'] <= error]
     return min(candidates) if candidates else None
@@ -113,11 +138,27 @@ def print_table(rows):
         print(f'| {scene} | ' + ' | '.join(cells) + ' |')
 
 
+def print_accuracy(accuracy):
+    """Of each scene and error asked for: the error got, by what, and its work."""
+    print('| scene | ' + ' | '.join(f'{e:g} rad/s asked' for e in WANTED_ERRORS) + ' |')
+    print('| --- |' + ' --- |' * len(WANTED_ERRORS))
+    for scene, rows in accuracy.items():
+        cells = []
+        for error in WANTED_ERRORS:
+            row = rows[error]
+            cells.append(f'{float(row["got"]):.1e} by `{row["integrator"]}`, '
+                         f'{float(row["cost"]):.2f}')
+        print(f'| {scene} | ' + ' | '.join(cells) + ' |')
+
+
 def main():
-    if len(sys.argv) != 4:
-        sys.exit('usage: plot_work_precision.py STEPS.csv RELAXATION.csv PICTURE.png')
+    if len(sys.argv) != 5:
+        sys.exit('usage: plot_work_precision.py STEPS.csv ACCURACY.csv RELAXATION.csv PICTURE.png')
     rows, references = read_steps(sys.argv[1])
-    draw(rows, references, read_relaxation(sys.argv[2]), sys.argv[3])
+    accuracy = read_accuracy(sys.argv[2])
+    draw(rows, references, accuracy, read_relaxation(sys.argv[3]), sys.argv[4])
+    print_accuracy(accuracy)
+    print()
     print_table(rows)
 
 
