@@ -17,9 +17,10 @@ namespace spherical_springs::core {
 /// How a simulation is to step.
 /// \snippet test_headers.cpp accuracy
 struct StepWish {
-  static constexpr double kShortest = 1e-12, kLongest = 1e6;  ///< time steps to choose from [s]
+  static constexpr double kShortest = 1e-12;  ///< the shortest time step that is chosen [s]
+  static constexpr double kLongest = 1e6;     ///< the longest time step that is chosen [s]
 
-  IntegrationMethod method = IntegrationMethod::verlet;
+  IntegrationMethod method = IntegrationMethod::verlet;  ///< unless it is chosen
   double time_step = 0.001;  ///< [s]; above an accuracy of 0, only where nothing moves
   double accuracy = 0;       ///< largest error per simulated second [rad/s]; 0: any, by `time_step`
   bool chooses_method = false;  ///< `verlet` or `fourth_order`, whichever takes less work
@@ -34,10 +35,10 @@ struct StepWish {
 
 /// How a simulation steps.
 struct StepChoice {
-  IntegrationMethod method = IntegrationMethod::verlet;
-  double time_step = 0.001;  ///< [s]
-  double error_rate = 0;     ///< estimated for it, where an accuracy was asked for [rad/s]
-  bool is_reached = true;    ///< whether that is within the accuracy
+  IntegrationMethod method = IntegrationMethod::verlet;  ///< of the steps
+  double time_step = 0.001;                              ///< [s]
+  double error_rate = 0;   ///< estimated for it, where an accuracy was asked for [rad/s]
+  bool is_reached = true;  ///< whether that is within the accuracy
   std::uint64_t steps_to_review = ~std::uint64_t(0);  ///< after which it is looked at again
 };
 
@@ -103,8 +104,8 @@ class Simulation {
 
   /// A state, and how it was stepped.
   struct Moment {
-    State state;
-    StepChoice choice;
+    State state;        ///< where the particles were
+    StepChoice choice;  ///< with the steps that were left to its review
   };
   /// Returns the present moment, for `restore`.
   Moment moment();
