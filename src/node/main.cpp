@@ -46,18 +46,19 @@ void loadFirstScene(const Parameters& parameters, const SceneDirectory& director
 /// Says in the log what runs, as a person who has just started it would ask.
 void tellOfStart(const Parameters& parameters, const SceneDirectory& directory,
                  core::Runner& runner) {
+  const core::StepChoice steps = runner.choice();
   const core::Runner::Snapshot now = runner.snapshot();
   const core::System& system = *now.plan->system();
   const std::size_t springs =
       runner.read([](const core::Simulation& s) { return s.scene().springCount(); });
-  const double stable = std::min(Parameters::kLongestTimeStep,
-                                 core::stableTimeStep(system, now.method, now.state.positions));
+  const double stable = std::min(core::StepWish::kLongest,
+                                 core::stableTimeStep(system, steps.method, now.state.positions));
   const std::string scene = parameters.scene.empty() ? "none" : core::quoted(parameters.scene);
   ROS_INFO(
       "%s: %zu particles, %zu springs; %s, time step %s s (stable up to %.3g s); %d thread%s; "
       "scene %s; files in %s",
       now.running ? "running" : "paused", static_cast<std::size_t>(system.particleCount()), springs,
-      core::nameOf(now.method), core::toText(now.time_step).c_str(), stable,
+      core::nameOf(steps.method), core::toText(steps.time_step).c_str(), stable,
       parameters.simulation().system.threads,
       parameters.simulation().system.threads == 1 ? "" : "s", scene.c_str(),
       core::onOneLine(directory.path()).c_str());
