@@ -144,8 +144,10 @@ class TestRefusals(ActionTest):
 
     def test_goals_while_a_service_is_at_work(self):
         add_knot(self.node)
-        self.node.begin('relax', method='dynamics', tolerance=1e-30)
-        words = wait_until(lambda: self.words_while_busy())
+        call = self.node.begin('relax', method='dynamics', tolerance=1e-30)
+        self.addCleanup(call.result, LONG)
+        self.addCleanup(self.node.cancel)
+        words = wait_until(self.words_while_busy)
         self.assertIn('~relax is under way', words)
         self.assert_refused(self.relax, RelaxGoal(), words)
         self.assert_refused(self.step, StepGoal(steps=1), words)
