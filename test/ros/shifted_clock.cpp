@@ -10,13 +10,15 @@
 namespace {
 
 time_t shift() {
-  const char* path = std::getenv("CLOCK_SHIFT");
+  const char* path = std::getenv("CLOCK_SHIFT");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   time_t seconds = 0;
   if (path != nullptr) std::ifstream(path) >> seconds;
   return seconds;
 }
 
 }  // namespace
+
+// NOLINTBEGIN(readability-inconsistent-declaration-parameter-name): those of glibc are reserved
 
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
   using Function = int (*)(clockid_t, timespec*);
@@ -33,3 +35,5 @@ extern "C" int gettimeofday(timeval* time, void*) noexcept {
   time->tv_usec = now.tv_nsec / 1000;
   return result;
 }
+
+// NOLINTEND(readability-inconsistent-declaration-parameter-name)
