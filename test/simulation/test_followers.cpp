@@ -40,13 +40,21 @@ class Followers : public ::testing::Test {
     endless_.tolerance = 1e-300;
   }
 
+  std::uint64_t step(std::uint64_t steps, StepFollower& follower) {
+    const auto left = [steps](double, const Runner::Done& done) { return steps - done.steps; };
+    return runner_
+        .step(
+            left, [] {}, &follower)
+        .steps;
+  }
+
   Runner runner_{Simulation::Settings(), false};
   RelaxationOptions endless_;
 };
 
 TEST_F(Followers, OfStepsAreToldOfTheBeginningAndTheEnd) {
   Recorder<StepProgress> follower(~std::size_t(0));
-  EXPECT_EQ(runner_.step([](const Simulation&) { return 3; }, [] {}, &follower), 3);
+  EXPECT_EQ(step(3, follower), 3);
   EXPECT_EQ(follower.told.front().steps, 0);
   EXPECT_EQ(follower.told.front().time, 0);
   EXPECT_EQ(follower.told.back().steps, 3);
@@ -56,9 +64,7 @@ TEST_F(Followers, OfStepsAreToldOfTheBeginningAndTheEnd) {
 
 TEST_F(Followers, CancelSteps) {
   Recorder<StepProgress> follower(4);
-  const auto steps = [](const Simulation&) { return ~std::uint64_t(0); };
-  const std::uint64_t done = runner_.step(
-      steps, [] {}, &follower);
+  const std::uint64_t done = step(~std::uint64_t(0), follower);
   EXPECT_EQ(follower.told.size(), 4);
   EXPECT_EQ(follower.told.back().steps, done);
   EXPECT_EQ(follower.cancels, 1);
@@ -67,7 +73,7 @@ TEST_F(Followers, CancelSteps) {
 
 TEST_F(Followers, CancelStepsBeforeTheFirst) {
   Recorder<StepProgress> follower(1);
-  EXPECT_EQ(runner_.step([](const Simulation&) { return 3; }, [] {}, &follower), 0);
+  EXPECT_EQ(step(3, follower), 0);
   EXPECT_EQ(follower.cancels, 1);
 }
 
@@ -103,7 +109,7 @@ TEST_F(Followers, OfWhatIsRefusedAreToldNothing) {
   EXPECT_THROW(runner_.relax(bad, &relaxing), std::invalid_argument);
   runner_.setRunning(true);
   Recorder<StepProgress> stepping(1);
-  EXPECT_THROW(runner_.step([](const Simulation&) { return 1; }, [] {}, &stepping), Refusal);
+  EXPECT_THROW(step(1, stepping), Refusal);
   EXPECT_TRUE(relaxing.told.empty());
   EXPECT_TRUE(stepping.told.empty());
 }
