@@ -270,7 +270,7 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
   response.energy_after = result.energy_after;
   response.max_torque = result.max_torque;
   response.message.assign(result.message, 0, kMessageRoom);
-  news_.relaxed(result.converged ? "" : response.message);
+  news_.relaxed(result.converged ? std::string_view() : response.message);
   news_.tell(response.message, "relax: ");
 }
 
