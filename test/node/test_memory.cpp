@@ -304,6 +304,12 @@ TEST_F(ShortMemoryTest, WhileItSteps) {
 
 TEST_F(ShortMemoryTest, WhileItRelaxes) { expectAllOrNothing<Relax>(&Handlers::relax, {}); }
 
+TEST_F(ShortMemoryTest, WhileItRelaxesAndDoesNotConverge) {
+  Relax::Request request;
+  request.tolerance = 1e-300;
+  expectAllOrNothing<Relax>(&Handlers::relax, request);
+}
+
 TEST_F(ShortMemoryTest, WhileNothingIsCancelled) {
   expectAllOrNothing<std_srvs::Trigger>(&Handlers::cancel, {});
 }

@@ -52,7 +52,7 @@ class TestClient(unittest.TestCase):
             outcome = self.run_client('/robot')
             self.assertEqual(0, outcome.returncode, outcome.stdout + process.output())
             directions = np.array([[float(number) for number in line.split()]
-                                   for line in outcome.stdout.splitlines()[1:]])
+                                   for line in outcome.stdout.splitlines()[-12:]])
             self.assertEqual((12, 3), directions.shape, outcome.stdout)
 
     def test_a_refusal_is_shown(self):
