@@ -115,7 +115,7 @@ class Runner {
   /// @throw std::bad_alloc.
   StepChoice choice();
 
-  /// What `advance` has left of a duration, which is less than a step unless time was short.
+  /// The rest of a duration after `advance`, which is less than a step unless time was short.
   struct Left {
     double duration;   ///< [s]
     double time_step;  ///< [s]

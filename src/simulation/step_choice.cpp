@@ -15,9 +15,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostTried = 1024;
-// Of the accuracy: what is chosen aims at, and how far what is kept may be off.
+// Shares of the accuracy: the error that a choice aims at, and the largest that a review keeps.
 constexpr double kAim = 0.7, kLessExact = 1.5;
-// Of the stable step, which changes while particles move: what is chosen, and what is kept.
+// Shares of the stable step, which changes as particles move: the longest step that is chosen, and
+// that a review keeps.
 constexpr double kShareOfStable = 0.75, kKeptShareOfStable = 0.9;
 constexpr double kLongest = 4;       // by the fastest time, for methods that bear any step
 constexpr double kShortest = 1e-6;   // by the fastest time

@@ -76,7 +76,7 @@ class NodeClient:
     def _method(self, service, service_type):
         def call(*args, **fields):
             if args and not hasattr(args[0], 'serialize'):
-                # Those given by position are the first ones; rospy would want all of them.
+                # Arguments by position are the first fields; rospy would want all of them.
                 fields.update(zip(service_type._request_class.__slots__, args))
                 args = ()
             # Each call has a proxy of its own, as threads may not share one.
