@@ -11,7 +11,7 @@
 
 namespace spherical_springs {
 
-constexpr auto kWaitsForClock =
+inline constexpr auto kWaitsForClock =
     "waiting for /clock: /use_sim_time is true, and nobody has published a time yet";
 
 /// Facts to report at one moment.
