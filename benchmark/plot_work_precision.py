@@ -127,28 +127,23 @@ def cheapest(methods, error):
     return min(candidates) if candidates else None
 
 
-def print_table(rows):
-    print('| scene | ' + ' | '.join(f'error {e:g}' for e in WANTED_ERRORS) + ' |')
+def print_table(scenes, head, cell):
+    """Print a row for each scene, and a column for each error: cell(what the scene has, error)."""
+    print('| scene | ' + ' | '.join(head.format(e) for e in WANTED_ERRORS) + ' |')
     print('| --- |' + ' --- |' * len(WANTED_ERRORS))
-    for scene, methods in rows.items():
-        cells = []
-        for error in WANTED_ERRORS:
-            best = cheapest(methods, error)
-            cells.append(f'`{best[1]}`, {best[2]:.2g} s' if best else 'not reached')
-        print(f'| {scene} | ' + ' | '.join(cells) + ' |')
+    for scene, results in scenes.items():
+        print(f'| {scene} | ' + ' | '.join(cell(results, e) for e in WANTED_ERRORS) + ' |')
 
 
-def print_accuracy(accuracy):
-    """Of each scene and error asked for: the error got, by what, and its work."""
-    print('| scene | ' + ' | '.join(f'{e:g} rad/s asked' for e in WANTED_ERRORS) + ' |')
-    print('| --- |' + ' --- |' * len(WANTED_ERRORS))
-    for scene, rows in accuracy.items():
-        cells = []
-        for error in WANTED_ERRORS:
-            row = rows[error]
-            cells.append(f'{float(row["got"]):.1e} by `{row["integrator"]}`, '
-                         f'{float(row["cost"]):.2f}')
-        print(f'| {scene} | ' + ' | '.join(cells) + ' |')
+def cheapest_in_words(methods, error):
+    best = cheapest(methods, error)
+    return f'`{best[1]}`, {best[2]:.2g} s' if best else 'not reached'
+
+
+def got_in_words(rows, asked):
+    """The error got, by which integrator, and its work."""
+    row = rows[asked]
+    return f'{float(row["got"]):.1e} by `{row["integrator"]}`, {float(row["cost"]):.2f}'
 
 
 def main():
@@ -157,9 +152,9 @@ def main():
     rows, references = read_steps(sys.argv[1])
     accuracy = read_accuracy(sys.argv[2])
     draw(rows, references, accuracy, read_relaxation(sys.argv[3]), sys.argv[4])
-    print_accuracy(accuracy)
+    print_table(accuracy, '{:g} rad/s asked', got_in_words)
     print()
-    print_table(rows)
+    print_table(rows, 'error {:g}', cheapest_in_words)
 
 
 if __name__ == '__main__':

@@ -43,14 +43,13 @@ struct RelaxWork {
   using ActionSpec = RelaxAction;
   using Service = Relax;
   using Progress = core::RelaxProgress;
-  using Feedback = RelaxFeedback;
-  using Result = RelaxResult;
 
   static constexpr auto kName = "relax";
 
-  static std::optional<Feedback> feedback(const Progress&, const Progress& now, double elapsed) {
+  static std::optional<RelaxFeedback> feedback(const Progress&, const Progress& now,
+                                               double elapsed) {
     if (now.best == nullptr) return {};
-    Feedback feedback;
+    RelaxFeedback feedback;
     feedback.progress = now.fraction;
     feedback.iterations = now.best->iterations;
     feedback.energy = now.best->energy_after;
@@ -69,14 +68,12 @@ struct StepWork {
   using ActionSpec = StepAction;
   using Service = Step;
   using Progress = core::StepProgress;
-  using Feedback = StepFeedback;
-  using Result = StepResult;
 
   static constexpr auto kName = "step";
 
-  static std::optional<Feedback> feedback(const Progress& begin, const Progress& now,
-                                          double elapsed) {
-    Feedback feedback;
+  static std::optional<StepFeedback> feedback(const Progress& begin, const Progress& now,
+                                              double elapsed) {
+    StepFeedback feedback;
     feedback.steps = now.steps;
     feedback.time = now.time;
     feedback.real_time_factor = (now.time - begin.time) / elapsed;
@@ -89,13 +86,16 @@ struct StepWork {
   }
 };
 
+template <class Work>
+using ResultOf = typename Work::ActionSpec::_action_result_type::_result_type;
+
 /// A goal while the work for it is done. Whoever has cancelled it, the client or ~cancel, it ends
 /// as preempted.
 template <class Work>
 class GoalUnderWay : public core::Follower<typename Work::Progress> {
  public:
   using Goal = actionlib::ServerGoalHandle<typename Work::ActionSpec>;
-  using Result = typename Work::Result;
+  using Result = ResultOf<Work>;
   using Progress = typename Work::Progress;
 
   explicit GoalUnderWay(const Goal& goal) : goal_(goal) {}
@@ -195,7 +195,7 @@ class WorkServer {
   void work(Goal goal) {
     if (goal.getGoalStatus().status == GoalStatus::RECALLING) {
       constexpr auto kNothingDone = "cancelled before it began; nothing has changed";
-      typename Work::Result result;
+      ResultOf<Work> result;
       result.message = kNothingDone;
       goal.setCanceled(result, kNothingDone);
       return;

@@ -116,7 +116,7 @@ void Pace::requireValid() const {
   requireAccuracyIfAutomatic(*this);
 }
 
-core::StepWish Pace::steps() const {
+core::StepWish Pace::stepWish() const {
   core::StepWish wish;
   wish.chooses_method = integrator == kAutomatic;
   if (!wish.chooses_method) wish.method = core::integrationMethod(integrator);
@@ -167,7 +167,7 @@ Parameters Parameters::from(const ros::NodeHandle& node) {
 
 core::Simulation::Settings Parameters::simulation() const {
   core::Simulation::Settings settings;
-  static_cast<core::StepWish&>(settings) = steps();
+  static_cast<core::StepWish&>(settings) = stepWish();
   settings.system.spring_damping =
       spring_damping == "own" ? core::SpringDamping::own : core::SpringDamping::relative;
   settings.system.threads = threads > 0 ? threads : core::availableThreads();

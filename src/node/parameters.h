@@ -41,7 +41,7 @@ struct Pace {
   void requireValid() const;
 
   /// Returns how the simulation is to step.
-  core::StepWish steps() const;
+  core::StepWish stepWish() const;
 
   /// Names each parameter that differs from `other`, and its value here; empty where none does.
   std::string differenceFrom(const Pace& other) const;

@@ -92,7 +92,7 @@ void Reconfiguration::change(dynamic_reconfigure::Config& update) {
   std::optional<bool> running;
   if (wanted.running != now.running) running = wanted.running;
   const std::string words = wordsFor(wanted, now);
-  wanted.time_step = runner_.stepBy(wanted.steps(), running).time_step;
+  wanted.time_step = runner_.stepBy(wanted.stepWish(), running).time_step;
   apply(wanted);
   news_.tell(words, "reconfigured: ");
 }

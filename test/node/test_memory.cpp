@@ -1,188 +1,20 @@
 // Memory that runs out at any allocation of a call, or of a sample: the call is refused and has
 // changed nothing, the sample is left out, and the next one works.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <sstream>
+#include <string>
+#include <vector>
 
-#include "failing_malloc.h"
-#include "node/answering_service.h"
 #include "node/conversion.h"
 #include "node/faults.h"
-#include "node/handlers.h"
 #include "node/markers.h"
 #include "node/poses.h"
-#include "support/scenes.h"
+#include "short_memory.h"
 
 namespace spherical_springs {
 namespace {
 
 using testing::ShortMemory;
-
-namespace fs = std::filesystem;
-
-class TemporaryDirectory {
- public:
-  TemporaryDirectory()
-      : path_(fs::temp_directory_path() / ("short_memory_" + std::to_string(::getpid()))) {
-    fs::create_directory(path_);
-  }
-  ~TemporaryDirectory() { fs::remove_all(path_); }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  const fs::path path_;
-};
-
-std::string contentOf(const fs::path& path) {
-  std::ostringstream content;
-  content << std::ifstream(path).rdbuf();
-  return content.str();
-}
-
-/// All of a node but what it needs a network for, with a scene that has moved.
-struct Node {
-  explicit Node(const fs::path& directory)
-      : directory(directory), handlers(runner, news, this->directory, {}, "map") {
-    const core::Scene random = core::testing::randomScene(1, 10, 15, 0.1, 1);
-    runner.change([&](core::Simulation& s) {
-      s.addParticles(random.particles().items());
-      s.addSprings(core::testing::springsOf(random));
-    });
-    runner.step(5);
-  }
-
-  /// Everything that a scene is, to the last bit, and the next ids.
-  std::string bits() {
-    std::ostringstream text;
-    runner.read([&](const core::Simulation& s) {
-      for (const core::Scene& scene : {s.scene(), s.presentScene()}) {
-        core::writeScene(text, scene, s.state().time);
-        text << scene.particles().nextId();
-        core::forEachKind([&](auto kind) {
-          text << ' ' << scene.springs<typename decltype(kind)::type>().nextId();
-        });
-      }
-      text << ' ' << s.state().steps;
-    });
-    text << ' ' << runner.snapshot().running;
-    return text.str();
-  }
-
-  core::Runner runner{{}, false};
-  News news;
-  SceneDirectory directory;
-  Handlers handlers;
-};
-
-template <class Service>
-using Handler = void (Handlers::*)(const typename Service::Request&, Answer<Service>&);
-
-/// A service as a client finds it.
-template <class Service>
-class Client {
- public:
-  Client(Node& node, Handler<Service> handle, const typename Service::Request& request)
-      : refusals_("a service", node.news),
-        service_(
-            {},
-            [&node, handle](const auto& request, auto& answer) {
-              (node.handlers.*handle)(request, answer);
-            },
-            refusals_),
-        request_(bytesOf(request)) {}
-
-  typename Service::Response call() {
-    ros::ServiceCallbackHelperCallParams params;
-    params.request = request_;
-    return responseIn(callWith(params));
-  }
-
-  typename Service::Response callShortOfMemory(long succeeding, long failing) {
-    ros::ServiceCallbackHelperCallParams params;
-    params.request = request_;
-    {
-      const ShortMemory memory(succeeding, failing);
-      callWith(params);
-    }
-    return responseIn(params);
-  }
-
- private:
-  // As it comes to a service, without the length before it.
-  static ros::SerializedMessage bytesOf(const typename Service::Request& request) {
-    const auto whole = ros::serialization::serializeMessage(request);
-    ros::SerializedMessage bytes(whole.buf, whole.num_bytes);
-    bytes.message_start = whole.message_start;
-    return bytes;
-  }
-
-  ros::ServiceCallbackHelperCallParams& callWith(ros::ServiceCallbackHelperCallParams& params) {
-    service_.call(params);
-    return params;
-  }
-
-  static typename Service::Response responseIn(const ros::ServiceCallbackHelperCallParams& params) {
-    constexpr std::uint32_t kHeader = 5;  // a flag and the length
-    const ros::SerializedMessage& bytes = params.response;
-    ros::serialization::IStream stream(bytes.buf.get() + kHeader,
-                                       static_cast<std::uint32_t>(bytes.num_bytes) - kHeader);
-    typename Service::Response response;
-    stream.next(response);
-    EXPECT_EQ(stream.getLength(), 0u);
-    return response;
-  }
-
-  Refusals refusals_;
-  AnsweringService<Service> service_;
-  const ros::SerializedMessage request_;
-};
-
-class ShortMemoryTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() { ros::Time::init(); }
-
-  Node makeNode() { return Node(directory_.path()); }
-
-  /// Lets the first allocation of a call fail, then the second, until it succeeds: those alone, and
-  /// with all after them.
-  template <class Service>
-  void expectAllOrNothing(Handler<Service> handle, const typename Service::Request& request) {
-    for (const long failing : {1L, ShortMemory::kAll}) {
-      SCOPED_TRACE(failing);
-      bool succeeded = false;
-      long failures = 0;
-      for (; !succeeded; ++failures) {
-        succeeded = succeedsOrChangesNothing<Service>(handle, request, failures, failing);
-        if (HasFatalFailure()) return;
-      }
-      EXPECT_GT(failures, 1) << "nothing failed";
-    }
-  }
-
-  template <class Service>
-  bool succeedsOrChangesNothing(Handler<Service> handle, const typename Service::Request& request,
-                                long succeeding, long failing) {
-    Node node(directory_.path());
-    const std::string before = node.bits();
-    Client<Service> client(node, handle, request);
-    const auto response = client.callShortOfMemory(succeeding, failing);
-    if (!response.success) {
-      EXPECT_EQ(node.bits(), before) << "after " << succeeding << " allocations";
-      EXPECT_NE(response.message, "");
-      EXPECT_TRUE(client.call().success);
-    }
-    return response.success;
-  }
-
-  const TemporaryDirectory directory_;
-};
 
 std::vector<std::uint32_t> someIds() { return {2, 3, 5, 7}; }
 

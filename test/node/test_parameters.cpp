@@ -91,18 +91,18 @@ TEST(Pace, NeedsAnAccuracyToChooseAnIntegrator) {
             "an ~accuracy above 0 [rad/s], or one of the other integrators");
   pace.accuracy = 1e-300;
   EXPECT_EQ(refusalOf(pace), "");
-  EXPECT_TRUE(pace.steps().chooses_method);
-  EXPECT_EQ(pace.steps().accuracy, 1e-300);
+  EXPECT_TRUE(pace.stepWish().chooses_method);
+  EXPECT_EQ(pace.stepWish().accuracy, 1e-300);
 }
 
 TEST(Pace, SaysHowToStep) {
   Pace pace;
   pace.time_step = 0.25;
   pace.integrator = "euler";
-  EXPECT_EQ(pace.steps().method, core::IntegrationMethod::euler);
-  EXPECT_EQ(pace.steps().time_step, 0.25);
-  EXPECT_EQ(pace.steps().accuracy, 0);
-  EXPECT_FALSE(pace.steps().chooses_method);
+  EXPECT_EQ(pace.stepWish().method, core::IntegrationMethod::euler);
+  EXPECT_EQ(pace.stepWish().time_step, 0.25);
+  EXPECT_EQ(pace.stepWish().accuracy, 0);
+  EXPECT_FALSE(pace.stepWish().chooses_method);
 }
 
 TEST(Pace, TellsNumbersThatAreNotFiniteFromOthers) {
