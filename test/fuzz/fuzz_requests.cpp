@@ -45,9 +45,7 @@ class Requests {
  private:
   Simulation::Settings settings() {
     Simulation::Settings settings;
-    settings.method = integrationMethod(
-        data_.PickValueInArray({"euler", "verlet", "fourth_order", "implicit_euler"}));
-    settings.time_step = data_.PickValueInArray({1e-12, 1e-3, 0.1, 1., 1e3, 1e6});
+    static_cast<StepWish&>(settings) = fixedSteps();
     settings.system.spring_damping =
         data_.ConsumeBool() ? SpringDamping::own : SpringDamping::relative;
     settings.system.threads = 1;
@@ -82,9 +80,27 @@ class Requests {
       case 7:
         for (int i = data_.ConsumeIntegralInRange(1, 4); i > 0; --i) simulation_.step();
         break;
+      case 8:
+        simulation_.stepBy(anySteps());
+        break;
       default:
         relaxShortly();
     }
+  }
+
+  StepWish fixedSteps() {
+    StepWish wish;
+    wish.method = integrationMethod(
+        data_.PickValueInArray({"euler", "verlet", "fourth_order", "implicit_euler"}));
+    wish.time_step = data_.PickValueInArray({1e-12, 1e-3, 0.1, 1., 1e3, 1e6});
+    return wish;
+  }
+
+  StepWish anySteps() {
+    StepWish wish = fixedSteps();
+    wish.accuracy = data_.PickValueInArray({0., 1e-9, 1e-4, 1.});
+    wish.chooses_method = data_.ConsumeBool();
+    return wish;
   }
 
   void relaxShortly() {
