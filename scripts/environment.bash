@@ -12,7 +12,7 @@ spherical_springs_environment() {
   [[ $PATH == /usr/bin:* ]] || export PATH=/usr/bin:$PATH
 
   # Debian's ROS has no setup file: it is on the system's own paths.
-  for setup in /opt/ros/noetic/setup.bash "$root/build/devel/setup.bash"; do
+  for setup in /opt/ros/{noetic,one}/setup.bash "$root/build/devel/setup.bash"; do
     # shellcheck disable=SC1090
     [[ -f $setup ]] && source "$setup"
   done

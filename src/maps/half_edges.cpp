@@ -7,7 +7,8 @@
 
 namespace spherical_springs::mesh {
 
-HalfEdges::HalfEdges(const Faces& faces) : faces_(faces), twins_(3 * faces.cols(), kNone) {
+HalfEdges::HalfEdges(const Faces& faces, const MeshNames& names)
+    : faces_(faces), twins_(3 * faces.cols(), kNone) {
   const auto lower = [&](Index h) { return std::min(origin(h), target(h)); };
   std::vector<Index> first(faces.size() == 0 ? 1 : faces.maxCoeff() + 2, 0);
   for (Index h = 0; h < size(); ++h) ++first[lower(h) + 1];
@@ -15,12 +16,13 @@ HalfEdges::HalfEdges(const Faces& faces) : faces_(faces), twins_(3 * faces.cols(
   std::vector<Index> sorted(twins_.size()), next = first;
   for (Index h = 0; h < size(); ++h) sorted[next[lower(h)]++] = h;
   for (std::size_t v = 0; v + 1 < first.size(); ++v) {
-    joinTwins(sorted.begin() + first[v], sorted.begin() + first[v + 1]);
+    joinTwins(sorted.begin() + first[v], sorted.begin() + first[v + 1], names);
   }
 }
 
 /// `begin` to `end`: the half-edges that have the lower of their ends in common.
-void HalfEdges::joinTwins(std::vector<Index>::iterator begin, std::vector<Index>::iterator end) {
+void HalfEdges::joinTwins(std::vector<Index>::iterator begin, std::vector<Index>::iterator end,
+                          const MeshNames& names) {
   const auto upper = [&](Index h) { return std::max(origin(h), target(h)); };
   std::sort(begin, end, [&](Index g, Index h) {
     return std::make_tuple(upper(g), origin(g), g) < std::make_tuple(upper(h), origin(h), h);
@@ -30,9 +32,8 @@ void HalfEdges::joinTwins(std::vector<Index>::iterator begin, std::vector<Index>
     if (upper(g) != upper(h)) continue;
     if (origin(g) == origin(h)) {
       throw std::invalid_argument(
-          "edge " + std::to_string(origin(g)) + "-" + std::to_string(target(g)) +
-          " runs the same way in faces " + std::to_string(face(g)) + " and " +
-          std::to_string(face(h)) +
+          names.edge(origin(g), target(g)) + " runs the same way in " + names.face(face(g)) +
+          " and " + names.face(face(h)) +
           "; allowed: two faces an edge, both counter-clockwise from outside");
     }
     twins_[g] = h;

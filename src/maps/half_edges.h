@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "maps/mesh_names.h"
 #include "spherical_springs/maps/triangle_mesh.h"
 
 namespace spherical_springs::mesh {
@@ -16,8 +17,9 @@ class HalfEdges {
 
   /// Two half-edges are twins where they run between the same vertices, opposite ways. `faces` must
   /// live longer.
-  /// @throw std::invalid_argument for an edge that two half-edges run along the same way.
-  explicit HalfEdges(const Faces& faces);
+  /// @throw std::invalid_argument, in the words of `names`, for an edge that two half-edges run
+  /// along the same way.
+  explicit HalfEdges(const Faces& faces, const MeshNames& names = {});
 
   Index size() const { return static_cast<Index>(twins_.size()); }
   Index twin(Index h) const { return twins_[h]; }  ///< kNone at a boundary
@@ -31,7 +33,8 @@ class HalfEdges {
   Index turned(Index h) const { return twin(previous(h)); }
 
  private:
-  void joinTwins(std::vector<Index>::iterator begin, std::vector<Index>::iterator end);
+  void joinTwins(std::vector<Index>::iterator begin, std::vector<Index>::iterator end,
+                 const MeshNames& names);
 
   const Faces& faces_;
   std::vector<Index> twins_;

@@ -133,7 +133,10 @@ std::optional<Points> relaxed(SpringsNode& node, const Network& network, double 
   return {};
 }
 
-void warnOfTask(const Task& task, const Options& options) {
+void tellOfTask(const Task& task, const Options& options) {
+  for (const std::string& sentence : task.repairs) {
+    std::cout << "repair: " << sentence << std::endl;
+  }
   if (!task.inside_out) return;
   warn(
       "the faces of " + options.mesh.string() +
@@ -145,6 +148,16 @@ void printStart(const FaceDistortion& start) {
   print("before", start, 0);
   if (coversOnce(summary(start))) return;
   std::cout << "the start does not cover the sphere once without folds: passed over" << std::endl;
+}
+
+void printTexture(const Options& options, const Task& task, const Points& map) {
+  if (options.uv.empty()) return;
+  Options other = options;
+  other.projection = mesh::Projection::longitude_latitude;
+  std::printf("texture: spread of texel density %.3g; %.3g in longitude and latitude\n",
+              spreadOfTexelDensity(textureOf(options, task, map)),
+              spreadOfTexelDensity(textureOf(other, task, map)));
+  std::fflush(stdout);
 }
 
 /// Writes a map in the place of the one before.
@@ -167,7 +180,7 @@ void run(const Options& options) {
   const auto distortionOf = [&](const Points& map) {
     return faceDistortion(task.surface, task.shares, map);
   };
-  warnOfTask(task, options);
+  tellOfTask(task, options);
   SpringsNode node(options.node);
   node.requireRoomFor(task.surface.vertices.cols(), springCount(triangles.cols()));
   if (node.wasBusy()) {
@@ -178,6 +191,7 @@ void run(const Options& options) {
   bool out_of_memory = false;
   const Points map = mapOf(task, options, out_of_memory);
   FaceDistortion faces = distortionOf(map);
+  Points best = map;
   if (!coversOnce(summary(faces))) refuseWithoutMap(options.mesh);
   writeFiles(options, task, map, faces);
   if (out_of_memory) warn(std::string(kNoMemory) + kMapSoFar);
@@ -190,9 +204,11 @@ void run(const Options& options) {
     if (isBetter(summary(after), summary(faces))) {
       rewriteFiles(options, task, *better, after);
       faces = after;
+      best = *better;
     }
   }
   print("after", faces, secondsSince(begin));
+  printTexture(options, task, best);
   printWordsOf(node);
 }
 

@@ -4,9 +4,11 @@
 #include <boost/lexical_cast/try_lexical_convert.hpp>
 #include <boost/program_options.hpp>
 #include <iostream>
+#include <sstream>
 #include <stdexcept>
 
 #include "base/files.h"
+#include "relax_mesh/input_path.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {
@@ -27,10 +29,45 @@ double parseAngleWeight(const std::string& text) {
   return weight;
 }
 
+int parseHole(const std::string& text) {
+  constexpr int kShortest = 3;
+  int edges;
+  if (!boost::conversion::try_lexical_convert(text, edges) || edges < kShortest) {
+    throw std::invalid_argument("--fill-holes is " + core::quoted(text) +
+                                "; allowed: the number of edges of a hole, 3 or more");
+  }
+  return edges;
+}
+
+mesh::Projection parseProjection(const std::string& text) {
+  try {
+    return mesh::projection(text);
+  } catch (const std::invalid_argument& fault) {
+    throw std::invalid_argument(std::string("--uv-projection is ") + fault.what());
+  }
+}
+
+mesh::Vector3 parseDirection(const char* option, const std::string& text) {
+  mesh::Vector3 direction;
+  std::istringstream in(text);
+  char first_comma = 0, second_comma = 0;
+  in >> direction[0] >> first_comma >> direction[1] >> second_comma >> direction[2];
+  if (!in || !(in >> std::ws).eof() || first_comma != ',' || second_comma != ',' ||
+      !direction.allFinite() || direction.isZero(0)) {
+    throw std::invalid_argument(std::string(option) + " is " + core::quoted(text) +
+                                "; allowed: three numbers X,Y,Z, not all 0");
+  }
+  return direction;
+}
+
 po::options_description described(Options& options) {
   const auto path = [](fs::path& target) {
     return po::value<std::string>()->notifier(
         [&](const std::string& text) { target = core::homeExpanded(text); });
+  };
+  const auto input = [](fs::path& target) {
+    return po::value<std::string>()->notifier(
+        [&](const std::string& text) { target = inputPath(text); });
   };
   po::options_description all(
       "relax_mesh: maps a closed surface to the sphere, every face to its share of the area.\n"
@@ -38,19 +75,45 @@ po::options_description described(Options& options) {
       "the node fails meanwhile, the map is written without its part, with a warning.\n\nOptions");
   auto add = all.add_options();
   add("help", "show this");
-  add("mesh", path(options.mesh)->required(),
-      "the surface: an OBJ file of triangles, closed, in one piece, without handles");
+  add("mesh", input(options.mesh)->required(),
+      "the surface: an OBJ, PLY, STL or OFF file, closed, in one piece, without handles; a path, "
+      "or "
+      "a URL package://PACKAGE/PATH or file:///PATH");
   add("output", path(options.output)->required(),
       "OBJ file to write: the same faces, their vertices on the unit sphere");
-  add("sphere", path(options.sphere), "start from the vertices of this OBJ file");
+  add("sphere", input(options.sphere), "start from the vertices of this file");
   add("uv", path(options.uv),
-      "OBJ file to write: the surface with longitude and latitude as texture coordinates");
+      "OBJ file to write: the surface with texture coordinates, its faces cut at seams and poles");
+  add("uv-projection",
+      po::value<std::string>()
+          ->default_value("longitude-latitude")
+          ->notifier([&](const std::string& text) { options.projection = parseProjection(text); }),
+      "of the sphere to texture coordinates: longitude-latitude, equal-area-cylinder or "
+      "equal-area-octahedron");
+  const auto towards = [](std::optional<mesh::Vector3>& target, const char* option) {
+    return po::value<std::string>()->notifier(
+        [&target, option](const std::string& text) { target = parseDirection(option, text); });
+  };
+  add("pole", towards(options.placement.pole, "--pole"),
+      "X,Y,Z: the vertex farthest in this direction comes to lie at the north pole of the map");
+  add("front", towards(options.placement.front, "--front"),
+      "X,Y,Z: the vertex farthest in this direction comes to lie in the middle of the texture, "
+      "with "
+      "--pole on its middle meridian");
+  add("weld", po::bool_switch(&options.repairs.weld),
+      "make vertices with the same coordinates one vertex (STL files: always)");
+  add("largest-piece", po::bool_switch(&options.repairs.largest_piece),
+      "keep only the piece of the largest area");
+  add("fill-holes", po::value<std::string>()->notifier([&](const std::string& text) {
+    options.repairs.longest_hole = parseHole(text);
+  }),
+      "fill holes of up to so many edges");
   add("angle-weight",
       po::value<std::string>()->default_value("0")->notifier(
           [&](const std::string& text) { options.angle_weight = parseAngleWeight(text); }),
       "0: every face gets its share of the area, whatever becomes of its angles; the more (up to "
       "1e6), the better corner angles are kept, and the worse areas");
-  add("density", path(options.density),
+  add("density", input(options.density),
       "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice "
       "the area on the sphere that it would get with 1");
   add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");

@@ -6,11 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "surfaces/placement.h"
+#include "surfaces/projection.h"
+#include "surfaces/repairs.h"
+
 namespace spherical_springs::relax_mesh {
 
 struct Options {
   std::filesystem::path mesh, output;
   std::filesystem::path sphere, uv, density, metrics;  ///< empty where not asked for
+  mesh::Repairs repairs;
+  mesh::Placement placement;
+  mesh::Projection projection = mesh::Projection::longitude_latitude;
   double angle_weight = 0;
   std::string node;
 };

@@ -8,10 +8,10 @@
 #include <string>
 
 #include "base/files.h"
-#include "relax_mesh/face_files.h"
 #include "relax_mesh/interruption.h"
-#include "relax_mesh/obj_file.h"
-#include "relax_mesh/texture_coordinates.h"
+#include "surfaces/face_files.h"
+#include "surfaces/obj_file.h"
+#include "surfaces/placement.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
@@ -56,15 +56,22 @@ class Writing {
 
 }  // namespace
 
+mesh::TexturedSurface textureOf(const Options& options, const Task& task, const Points& map) {
+  return mesh::textured(task.surface, mesh::placed(task.surface, map, options.placement),
+                        options.projection);
+}
+
 void writeFiles(const Options& options, const Task& task, const Points& map,
                 const mesh::FaceDistortion& faces) {
   Writing writing;
   writing.write(options.output, [&](std::ostream& out) {
-    mesh::writeObj(out, {map, task.surface.faces}, throwIfInterrupted);
+    mesh::writeObj(
+        out,
+        mesh::TriangleMesh{mesh::placed(task.surface, map, options.placement), task.surface.faces},
+        throwIfInterrupted);
   });
   writing.write(options.uv, [&](std::ostream& out) {
-    mesh::writeObj(out, task.surface, mesh::longitudeLatitude(map, task.surface.faces),
-                   throwIfInterrupted);
+    mesh::writeObj(out, textureOf(options, task, map), throwIfInterrupted);
   });
   writing.write(options.metrics, [&](std::ostream& out) {
     mesh::writeMetrics(out, task.shares, faces, throwIfInterrupted);

@@ -1,68 +1,123 @@
 #include "relax_mesh/task.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/files.h"
 #include "maps/topological_sphere.h"
-#include "relax_mesh/face_files.h"
 #include "relax_mesh/interruption.h"
-#include "relax_mesh/obj_file.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "surfaces/face_files.h"
+#include "surfaces/repairs.h"
+#include "surfaces/surface.h"
+#include "surfaces/surface_file.h"
 
 namespace spherical_springs::relax_mesh {
 namespace {
 
 namespace fs = std::filesystem;
 
-mesh::TriangleMesh readSurface(const fs::path& path) {
-  mesh::TriangleMesh surface = mesh::readObj(path, throwIfInterrupted);
-  about(path, [&] { mesh::requireTopologicalSphere(surface); });
-  return surface;
+/// A surface, and the file that it comes from.
+struct Source {
+  explicit Source(const fs::path& path)
+      : file(mesh::readPolygons(path, throwIfInterrupted)),
+        surface(mesh::triangulated(file)),
+        names(file, surface) {}
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  mesh::PolygonMesh file;
+  mesh::Surface surface;
+  mesh::FileNames names;
+};
+
+/// Repairs the surface. Returns what was done.
+std::vector<std::string> repair(const Options& options, Source& source) {
+  mesh::Repairs repairs = options.repairs;
+  repairs.weld |= !source.file.numbers_vertices;
+  return about(options.mesh, [&] {
+    std::vector<std::string> told = mesh::repair(source.surface, repairs, source.names);
+    mesh::requireTopologicalSphere(source.surface.mesh, source.names);
+    return told;
+  });
 }
 
-Values readShares(const Options& options, const mesh::TriangleMesh& surface) {
-  const Values areas = mesh::faceAreas(surface);
+/// Returns a density a triangle: the one of its face in the file, and for faces that fill holes the
+/// mean of all.
+Values densitiesOfTriangles(const Values& densities, const mesh::Surface& surface) {
+  Values result(surface.mesh.faces.cols());
+  for (Eigen::Index f = 0; f < result.size(); ++f) {
+    const std::int32_t face = surface.file_faces[f];
+    result[f] = face == mesh::Surface::kNone ? densities.mean() : densities[face];
+  }
+  return result;
+}
+
+Values readShares(const Options& options, const Source& source) {
+  const Values areas = mesh::faceAreas(source.surface.mesh);
   Values shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
   if (options.density.empty()) return shares;
   std::ifstream in = core::openToRead(options.density);
   return about(options.density, [&] {
-    return mesh::faceShares(
-        areas.cwiseProduct(mesh::readDensities(in, areas.size(), throwIfInterrupted)));
+    const Values densities = mesh::readDensities(in, source.file.faces(), throwIfInterrupted);
+    return mesh::faceShares(areas.cwiseProduct(densitiesOfTriangles(densities, source.surface)));
   });
 }
 
-Points directions(const Points& vertices) {
+Points directions(const Points& vertices, const mesh::MeshNames& names) {
   Points result(3, vertices.cols());
-  for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+  for (std::int32_t i = 0; i < vertices.cols(); ++i) {
     if (vertices.col(i).isZero(0)) {
-      throw std::invalid_argument("vertex " + std::to_string(i) +
-                                  " is at the origin, and has no direction");
+      throw std::invalid_argument(names.vertex(i) + " has no direction");
     }
     result.col(i) = core::direction(vertices.col(i));
   }
   return result;
 }
 
-Points readStart(const fs::path& path, const mesh::Faces& faces) {
-  const mesh::TriangleMesh sphere = mesh::readObj(path, throwIfInterrupted);
+/// Whether a start gives every vertex of the source's file its place, in the same faces.
+bool isOfSameFile(const mesh::PolygonMesh& start, const Source& source) {
+  const auto& of_file = source.surface.file_vertices;
+  return start.corners == source.file.corners && start.ends == source.file.ends &&
+         start.vertices.size() == source.file.vertices.size() &&
+         std::find(of_file.begin(), of_file.end(), mesh::Surface::kNone) == of_file.end();
+}
+
+/// Reads a start with the faces of the file, or with those of the surface made of it.
+Points readStart(const fs::path& path, const Source& source) {
+  const Source start(path);
   return about(path, [&] {
-    if (sphere.faces.cols() != faces.cols() || sphere.faces != faces) {
+    const Points all = directions(start.surface.mesh.vertices, start.names);
+    if (isOfSameFile(start.file, source)) {
+      Points result(3, source.surface.mesh.vertices.cols());
+      for (Eigen::Index v = 0; v < result.cols(); ++v) {
+        result.col(v) = all.col(source.surface.file_vertices[v]);
+      }
+      return result;
+    }
+    const mesh::Faces &faces = start.surface.mesh.faces, &wanted = source.surface.mesh.faces;
+    if (faces.cols() != wanted.cols() || faces != wanted ||
+        all.cols() != source.surface.mesh.vertices.cols()) {
       throw std::invalid_argument("its faces are not those of the surface");
     }
-    return directions(sphere.vertices);
+    return all;
   });
 }
 
 }  // namespace
 
 Task readTask(const Options& options) {
+  Source source(options.mesh);
   Task task;
-  task.surface = readSurface(options.mesh);
-  task.inside_out = mesh::volume(task.surface) < 0;
+  task.repairs = repair(options, source);
+  task.inside_out = mesh::volume(source.surface.mesh) < 0;
   task.shares_from = options.density.empty() ? options.mesh : options.density;
-  task.shares = readShares(options, task.surface);
-  if (!options.sphere.empty()) task.start = readStart(options.sphere, task.surface.faces);
+  task.shares = readShares(options, source);
+  if (!options.sphere.empty()) task.start = readStart(options.sphere, source);
+  task.surface = std::move(source.surface.mesh);
   return task;
 }
 

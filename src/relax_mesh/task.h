@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "relax_mesh/options.h"
 #include "spherical_springs/maps/triangle_mesh.h"
@@ -16,6 +18,7 @@ using core::Values;
 
 struct Task {
   mesh::TriangleMesh surface;
+  std::vector<std::string> repairs;   ///< a sentence each
   Values shares;                      ///< of the sphere, one a face, summing to 4 pi [sr]
   std::filesystem::path shares_from;  ///< the file that has the last word on them
   std::optional<Points> start;        ///< one unit vector a vertex
@@ -32,9 +35,11 @@ auto about(const std::filesystem::path& path, const Use& use) {
   }
 }
 
+/// Reads what the options name. Densities are one a face of the file, in its order.
 /// @throw std::invalid_argument or std::runtime_error, with the file and the reason, for a surface
-/// that is no topological sphere or has no area, for densities that are not one a face, and for a
-/// start that has other faces than the surface or a vertex without direction.
+/// that, after the repairs asked for, is no topological sphere or has no area, for densities that
+/// are not one a face, and for a start that has other faces than the surface or a vertex without
+/// direction.
 Task readTask(const Options& options);
 
 }  // namespace spherical_springs::relax_mesh

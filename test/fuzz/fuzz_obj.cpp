@@ -8,7 +8,8 @@
 #include <string>
 
 #include "maps/topological_sphere.h"
-#include "relax_mesh/obj_file.h"
+#include "surfaces/obj_file.h"
+#include "surfaces/surface.h"
 #include "soundness.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/sphere_map.h"
@@ -20,7 +21,7 @@ namespace {
 
 mesh::TriangleMesh meshOf(const std::string& text) {
   std::istringstream in(text);
-  return mesh::readObj(in);
+  return mesh::triangulated(mesh::readObj(in)).mesh;
 }
 
 void requireReadBackTheSame(const mesh::TriangleMesh& mesh) {
@@ -58,10 +59,15 @@ void requireMapped(const mesh::TriangleMesh& surface, Effort effort) {
   require(distortion.folded == 0, "no face is folded");
   require(std::abs(distortion.total_area - 4 * core::kPi) < 1e-9, "the sphere is covered once");
   require(std::isfinite(distortion.spread + distortion.worst_angle), "distortion is finite");
-  const mesh::TextureCoordinates texture = mesh::longitudeLatitude(map, surface.faces);
-  require(texture.places.allFinite(), "texture coordinates are finite");
-  require(texture.corners.minCoeff() >= 0 && texture.corners.maxCoeff() < texture.places.cols(),
-          "corners have texture coordinates");
+  for (const auto projection :
+       {mesh::Projection::longitude_latitude, mesh::Projection::equal_area_octahedron}) {
+    const mesh::TexturedSurface texture = mesh::textured(surface, map, projection);
+    require(texture.places.allFinite(), "texture coordinates are finite");
+    require(texture.places.minCoeff() >= 0 && texture.places.maxCoeff() <= 1,
+            "texture coordinates are in the texture");
+    require(texture.corners.minCoeff() >= 0 && texture.corners.maxCoeff() < texture.places.cols(),
+            "corners have texture coordinates");
+  }
 }
 
 }  // namespace

@@ -68,13 +68,13 @@ TEST(MeshTopology, SpheresPass) {
 }
 
 TEST(MeshTopology, OpenMeshesAreRefused) {
-  expectRefusal(withoutFace(sphere(), 7), "the mesh is open: edge ");
+  expectRefusal(withoutFace(sphere(), 7), "the mesh is open: it has 1 hole, of 3 edges; edge ");
 }
 
 TEST(MeshTopology, FacesTurnedOverAreRefused) {
   TriangleMesh mesh = sphere();
   std::swap(mesh.faces(0, 7), mesh.faces(1, 7));
-  expectRefusal(mesh, "runs the same way in faces ");
+  expectRefusal(mesh, "runs the same way in face ");
   expectRefusal(mesh, "7");
 }
 
@@ -82,11 +82,11 @@ TEST(MeshTopology, EdgesOfThreeFacesAreRefused) {
   TriangleMesh mesh = sphere();
   mesh.faces.conservativeResize(3, mesh.faces.cols() + 1);
   mesh.faces.col(mesh.faces.cols() - 1) << mesh.faces(0, 7), mesh.faces(1, 7), 40;
-  expectRefusal(mesh, "runs the same way in faces 7 and 80");
+  expectRefusal(mesh, "runs the same way in face 7 and face 80");
 }
 
 TEST(MeshTopology, TwoPiecesAreRefused) {
-  expectRefusal(twoOf(sphere()), "several pieces: face 80 is not connected with face 0");
+  expectRefusal(twoOf(sphere()), "the mesh has 2 pieces, of 80 and 80 faces; face 80 is not connected with face 0");
 }
 
 TEST(MeshTopology, PiecesThatMeetInAVertexAreRefused) {

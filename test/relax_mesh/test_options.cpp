@@ -46,6 +46,29 @@ TEST(Options, AreLeftOutWhereNobodyNeedsThem) {
   EXPECT_FALSE(parseOptions({"--help"}));
 }
 
+TEST(Options, OfRepairsAndTexturesAreRead) {
+  const auto options = parseOptions({"--mesh", "a.stl", "--output", "c.obj", "--largest-piece",
+                                     "--fill-holes", "12", "--pole", "0,0,-1", "--front=1e-3, 2,3",
+                                     "--uv-projection", "equal-area-cylinder"});
+  ASSERT_TRUE(options);
+  EXPECT_TRUE(options->repairs.largest_piece);
+  EXPECT_FALSE(options->repairs.weld);
+  EXPECT_EQ(12, options->repairs.longest_hole);
+  EXPECT_EQ(mesh::Vector3(0, 0, -1), options->placement.pole);
+  EXPECT_EQ(mesh::Vector3(1e-3, 2, 3), options->placement.front);
+  EXPECT_EQ(mesh::Projection::equal_area_cylinder, options->projection);
+  EXPECT_EQ("--fill-holes is '2'; allowed: the number of edges of a hole, 3 or more",
+            reasonAgainst({"--fill-holes", "2"}));
+  for (const char* text : {"1,2", "0,0,0", "1,2,3,4", "1;2;3", "nan,0,0", "", "1,2,3x"}) {
+    EXPECT_EQ("--pole is '" + std::string(text) + "'; allowed: three numbers X,Y,Z, not all 0",
+              reasonAgainst({"--pole", text}));
+  }
+  EXPECT_EQ(
+      "--uv-projection is 'mercator'; allowed: longitude-latitude, equal-area-cylinder or "
+      "equal-area-octahedron",
+      reasonAgainst({"--uv-projection", "mercator"}));
+}
+
 TEST(Options, AreRefusedWithAReason) {
   EXPECT_THROW(parseOptions({"--mesh", "a.obj"}), std::invalid_argument);
   EXPECT_THROW(parseOptions({"--output", "a.obj"}), std::invalid_argument);

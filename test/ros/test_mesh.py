@@ -3,14 +3,15 @@
 import csv
 import os
 import re
+import subprocess
 import unittest
 
 import numpy as np
 import rospkg
 
 from mesh_test import MeshTest
-from node_client import PACKAGE
-from relax_mesh import relax_mesh
+from node_client import LONG, PACKAGE
+from relax_mesh import command, relax_mesh
 from scenes import particle, solid_angles
 from shapes import BROKEN, bumpy, mesh, star
 
@@ -131,23 +132,88 @@ class TestShapes(MeshTest):
 
     def test_texture_coordinates(self):
         vertices, faces = bumpy(2)
-        self.run_to_success(mesh=self.write('surface.obj', vertices, faces),
-                            uv=self.path('uv.obj'))
+        outcome = self.run_to_success(mesh=self.write('surface.obj', vertices, faces),
+                                      uv=self.path('uv.obj'), pole='0,0,1', front='1,0,0')
         sphere, _ = mesh.read_obj(self.path('sphere.obj'))
-        same_vertices, same_faces = mesh.read_obj(self.path('uv.obj'))
-        np.testing.assert_array_equal(vertices, same_vertices)
-        np.testing.assert_array_equal(faces, same_faces)
+        np.testing.assert_array_equal((0, 0, 1), sphere[vertices[:, 2].argmax()])
+        np.testing.assert_allclose(0, sphere[vertices[:, 0].argmax(), 1], atol=1e-15)
+        cut_vertices, cut_faces = mesh.read_obj(self.path('uv.obj'))
+        np.testing.assert_array_equal(vertices, cut_vertices[:len(vertices)])
+        self.assertAlmostEqual(mesh.areas(vertices, faces).sum(),
+                               mesh.areas(cut_vertices, cut_faces).sum(), delta=1e-9)
         with open(self.path('uv.obj')) as file:
             lines = [line.split() for line in file]
         places = np.array([line[1:] for line in lines if line[0] == 'vt'], float)
         corners = np.array([[int(corner.split('/')[1]) - 1 for corner in line[1:]]
                             for line in lines if line[0] == 'f'])
+        self.assertTrue((0 <= places).all() and (places <= 1).all())
         longitude, latitude = np.moveaxis((places[corners] - 0.5) * (2 * np.pi, np.pi), 2, 0)
         found = np.stack([np.cos(latitude) * np.cos(longitude),
                           np.cos(latitude) * np.sin(longitude), np.sin(latitude)], axis=2)
-        np.testing.assert_allclose(found, sphere[faces], atol=1e-12)
-        across = np.ptp(places[corners][:, :, 0], axis=1) > 0.5 + 1e-12
-        self.assertLessEqual(np.count_nonzero(across), 2)  # with a pole inside
+        old = cut_faces < len(vertices)
+        np.testing.assert_allclose(found[old], sphere[cut_faces[old]], atol=1e-9)
+        self.assertLess(np.ptp(places[corners][:, :, 0], axis=1).max(), 0.5)
+        spread, other = re.search(r'texel density ([.\d]+); ([.\d]+) in', outcome.output).groups()
+        self.assertEqual(spread, other)
+
+    def test_equal_area_texture(self):
+        vertices, faces = bumpy()
+        surface = self.write('surface.obj', vertices, faces)
+        outcome = self.run_to_success(mesh=surface, uv=self.path('uv.obj'),
+                                      uv_projection='equal-area-octahedron')
+        spread, other = re.search(r'texel density ([.\d]+); ([.\d]+) in', outcome.output).groups()
+        self.assertLess(float(spread), 0.1)
+        self.assertGreater(float(other), 0.3)
+
+
+class TestFormats(MeshTest):
+    """Surfaces as other programs write them."""
+
+    def write_text(self, name, text):
+        with open(self.path(name), 'w') as file:
+            file.write(text)
+        return self.path(name)
+
+    def test_stl_with_a_hole_and_a_second_piece(self):
+        vertices, faces = bumpy(2)
+        corners = np.concatenate([vertices[faces[1:]], 9 + 0.1 * vertices[faces]])
+        surface = self.write_text('surface.stl', 'solid\n' + ''.join(
+            'facet normal 0 0 0\nouter loop\n' + ''.join('vertex %.9g %.9g %.9g\n' % tuple(v)
+                                                        for v in triangle) +
+            'endloop\nendfacet\n' for triangle in corners) + 'endsolid\n')
+        command_line = [*command(mesh='file://' + surface, output=self.path('sphere.obj'),
+                                 fill_holes=3), '--largest-piece']
+        run = subprocess.run(command_line, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                             text=True, timeout=4 * LONG)
+        self.assertEqual((0, ''), (run.returncode, run.stderr))
+        for line in ('repair: welded ', 'repair: kept the piece of the largest area, of %d faces, '
+                     'and left out 1 other' % (len(faces) - 1),
+                     'repair: filled 1 hole with 1 face and 0 new vertices'):
+            self.assertIn(line, run.stdout)
+        sphere, mapped = mesh.read_obj(self.path('sphere.obj'))
+        self.assertEqual((len(vertices), len(faces)), (len(sphere), len(mapped)))
+
+    def test_polygons_with_a_density_each(self):
+        box = [(x, y, z) for x in (0, 1) for y in (0, 2) for z in (0, 3)]
+        sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        text = 'OFF\n8 6 0\n' + ''.join('%g %g %g\n' % v for v in box) + ''.join(
+            '4 %d %d %d %d\n' % side for side in sides)
+        self.write_text('density', '1 1 1 1 1 3')
+        outcome = self.run_to_success(mesh=self.write_text('box.off', text),
+                                      density=self.path('density'), metrics=self.path('m.csv'))
+        shares = np.loadtxt(self.path('m.csv'), delimiter=',', skiprows=1)[:, 1]
+        weights = np.repeat([6, 6, 3, 3, 2, 3 * 2], 2) / 2
+        np.testing.assert_allclose(shares, 4 * np.pi * weights / weights.sum(), rtol=1e-9)
+        self.assertEqual(0, outcome.figures('after')['folded'])
+
+    def test_a_start_for_the_vertices_of_the_file(self):
+        vertices, faces = bumpy(2)
+        loose = self.write('surface.obj', np.concatenate([[(9, 9, 9)], vertices]), faces + 1)
+        start = self.write('start.obj', np.concatenate([[(0, 0, 1)], vertices]), faces + 1)
+        outcome = self.run_to_success(mesh=loose, sphere=start)
+        self.assertIn('repair: left out 1 vertex that belongs to no face', outcome.output)
+        self.assertEqual(0, outcome.figures('before')['folded'])
+        self.assert_is_map(faces, mesh.areas(vertices, faces), outcome)
 
 
 class TestFiles(MeshTest):
@@ -157,8 +223,12 @@ class TestFiles(MeshTest):
         vertices, faces = bumpy(2)
         files = {name: self.path(name) for name in ('output', 'uv', 'metrics')}
         surface = self.write('surface.obj', vertices, faces)
-        most = 2 * os.path.getsize(surface)  # less than of metrics
-        outcome = relax_mesh(mesh=surface, longest_file=most, **files)
+        relax_mesh(mesh=surface, **files)
+        sizes = {name: os.path.getsize(path) for name, path in files.items()}
+        self.assertGreater(sizes['metrics'], max(sizes['output'], sizes['uv']))
+        for path in files.values():
+            os.remove(path)
+        outcome = relax_mesh(mesh=surface, longest_file=sizes['metrics'] - 1, **files)
         self.assertEqual(
             (1, 'error: cannot write %s: File too large; written: %s, %s'
              % (files['metrics'], files['output'], files['uv'])), (outcome.code, outcome.error))

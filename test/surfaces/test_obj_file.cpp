@@ -7,15 +7,17 @@
 #include <stdexcept>
 #include <string>
 
-#include "relax_mesh/obj_file.h"
 #include "support/mesh_scenes.h"
+#include "surfaces/obj_file.h"
+#include "surfaces/surface.h"
+#include "surfaces/surface_file.h"
 
 namespace spherical_springs::mesh {
 namespace {
 
 TriangleMesh meshOf(const std::string& text) {
   std::istringstream in(text);
-  return readObj(in);
+  return triangulated(readObj(in)).mesh;
 }
 
 std::string reasonAgainst(const std::string& text) {
@@ -43,28 +45,28 @@ TEST(ObjFile, PassesACheckpointWithEachLine) {
   std::ostringstream out;
   EXPECT_NO_THROW(writeObj(out, sphere, checkpointAfter(12 + 20)));
   EXPECT_THROW(writeObj(out, sphere, checkpointAfter(12 + 19)), std::domain_error);
-  const TextureCoordinates texture{Eigen::Matrix2Xd::Zero(2, 5), sphere.faces};
-  EXPECT_NO_THROW(writeObj(out, sphere, texture, checkpointAfter(12 + 5 + 20)));
-  EXPECT_THROW(writeObj(out, sphere, texture, checkpointAfter(12 + 5 + 19)), std::domain_error);
+  const TexturedSurface texture{sphere, Eigen::Matrix2Xd::Zero(2, 5), sphere.faces};
+  EXPECT_NO_THROW(writeObj(out, texture, checkpointAfter(12 + 5 + 20)));
+  EXPECT_THROW(writeObj(out, texture, checkpointAfter(12 + 5 + 19)), std::domain_error);
 }
 
 TEST(ObjFile, KeepsOrderAndEveryBit) {
   const TriangleMesh sphere = mesh_scenes::icosphere(2);
   std::stringstream file;
   writeObj(file, sphere);
-  const TriangleMesh again = readObj(file);
+  const TriangleMesh again = triangulated(readObj(file)).mesh;
   EXPECT_EQ(sphere.vertices, again.vertices);
   EXPECT_EQ(sphere.faces, again.faces);
 }
 
 TEST(ObjFile, WithTextureCoordinatesNamesPlaceAndVertexOfEachCorner) {
-  TriangleMesh mesh{Points::Identity(3, 3), Faces(3, 1)};
-  mesh.faces << 2, 0, 1;
-  TextureCoordinates texture{Eigen::Matrix2Xd(2, 4), Faces(3, 1)};
+  TexturedSurface texture{
+      {Points::Identity(3, 3), Faces(3, 1)}, Eigen::Matrix2Xd(2, 4), Faces(3, 1)};
+  texture.surface.faces << 2, 0, 1;
   texture.places << 0, 0.25, 0.5, 1.5, 0, 0.125, 1, 0.75;
   texture.corners << 3, 0, 1;
   std::ostringstream file;
-  writeObj(file, mesh, texture);
+  writeObj(file, texture);
   EXPECT_EQ(
       "v 1 0 0\nv 0 1 0\nv 0 0 1\n"
       "vt 0 0\nvt 0.25 0.125\nvt 0.5 1\nvt 1.5 0.75\nf 3/4 1/1 2/2\n",
@@ -92,6 +94,25 @@ TEST(ObjFile, MayBeginWithAByteOrderMark) {
   EXPECT_EQ(meshOf(text).faces, mesh.faces);
 }
 
+TEST(ObjFile, MayHaveAnyLineEndsCommentsAndContinuedLines) {
+  const TriangleMesh expected = meshOf(kCorners + "v 0 0 1\nf 1 2 3\nf 2 3 4\n");
+  for (const char* text : {"v 0 0 0\rv 1 0 0\rv 0 1 0\rv 0 0 1\rf 1 2 3\rf 2 3 4",
+                           "v 0 0 0 # of C:\\\nv 1 0 0# here\r\nv 0 1 0\nv 0 \\\n0 1\nf 1 2 3 # "
+                           "4\nf 2\\\r\n3\\\r\n4\r\n"}) {
+    EXPECT_EQ(expected.vertices, meshOf(text).vertices) << text;
+    EXPECT_EQ(expected.faces, meshOf(text).faces) << text;
+  }
+  EXPECT_EQ("line 3: a vertex is not three finite numbers", reasonAgainst("v 0 \\\n0 0\rv 1 0\r"));
+}
+
+TEST(ObjFile, MayHavePolygons) {
+  std::istringstream in(kCorners + "v 1 1 0\nv 9 9 9\nf 1/1 2/2 -2/3 3/4\nf 1 2 3\n");
+  const PolygonMesh mesh = readObj(in);
+  EXPECT_EQ((std::vector<std::int32_t>{0, 1, 3, 2, 0, 1, 2}), mesh.corners);
+  EXPECT_EQ((std::vector<std::size_t>{4, 7}), mesh.ends);
+  EXPECT_EQ((std::vector<std::uint32_t>{6, 7}), mesh.lines);
+}
+
 TEST(ObjFile, RefusesWhatIsNoVertex) {
   for (const char* line : {"v nan 0 0", "v 0 inf 0", "v 0 0 1e999", "v 1 2", "v 1 2 ", "v",
                            "v 1 2 x", "v 1 2 3x", "v 1,5 2 3"}) {
@@ -110,10 +131,8 @@ TEST(ObjFile, RefusesWhatIsNoFace) {
   EXPECT_EQ("line 4: a face has vertex 4; allowed: 1 to 3", reason("f 1 2 4"));
   EXPECT_NE("taken", reason("f 1 2 99999999999999999999"));
   EXPECT_NE("taken", reason("f 1 2 -99999999999999999999"));
-  EXPECT_EQ("line 4: a face has 1 corner; allowed: 3, which a face needs", reason("f 1"));
-  EXPECT_EQ("line 4: a face has 2 corners; allowed: 3, which a face needs", reason("f 1 2"));
-  EXPECT_EQ("line 4: a face has 4 corners; allowed: 3, so cut it into triangles first",
-            reason("f 1 2 3 1"));
+  EXPECT_EQ("line 4: a face has 1 corner; allowed: 3 or more", reason("f 1"));
+  EXPECT_EQ("line 4: a face has 2 corners; allowed: 3 or more", reason("f 1 2"));
 }
 
 TEST(ObjFile, RefusesWhatIsNoMesh) {
@@ -127,8 +146,8 @@ TEST(ObjFile, RefusesWhatIsNoMesh) {
 }
 
 TEST(ObjFile, RefusesWhatIsNoFile) {
-  EXPECT_THROW(readObj(std::filesystem::path("/nowhere/x.obj")), std::runtime_error);
-  EXPECT_THROW(readObj(std::filesystem::temp_directory_path()), std::runtime_error);
+  EXPECT_THROW(readPolygons("/nowhere/x.obj"), std::runtime_error);
+  EXPECT_THROW(readPolygons(std::filesystem::temp_directory_path()), std::runtime_error);
 }
 
 TEST(ObjFile, IsNamedOnOneLine) {
@@ -136,7 +155,7 @@ TEST(ObjFile, IsNamedOnOneLine) {
       std::filesystem::temp_directory_path() / ("a\nb" + std::to_string(::getpid()));
   std::ofstream(path) << "v 0 0 0\n";
   try {
-    readObj(path);
+    readPolygons(path);
     ADD_FAILURE() << "taken";
   } catch (const std::invalid_argument& fault) {
     EXPECT_EQ(std::string(fault.what()).find('\n'), std::string::npos) << fault.what();

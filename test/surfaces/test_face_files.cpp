@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "relax_mesh/face_files.h"
+#include "surfaces/face_files.h"
 
 namespace spherical_springs::mesh {
 namespace {

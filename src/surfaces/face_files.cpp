@@ -1,12 +1,12 @@
-#include "relax_mesh/face_files.h"
+#include "surfaces/face_files.h"
 
 #include <iomanip>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "relax_mesh/byte_order_mark.h"
 #include "spherical_springs/range.h"
+#include "surfaces/byte_order_mark.h"
 
 namespace spherical_springs::mesh {
 
