@@ -72,7 +72,7 @@ class TestLargeRequests(unittest.TestCase):
         before = self.memory('VmHWM')
         request = many_particles(1000000)
         self.assert_refused('particles.*1000000.*allowed.*1000', 'add_particles', request)
-        # What came over the wire, which ROS holds, and nothing beside.
+        # The bytes received, which ROS holds, and no more.
         self.assertLess(self.memory('VmHWM') - before,
                         1.2 * 1000000 * len(PARTICLE) + 10 * MEGABYTE)
 

@@ -11,7 +11,7 @@ NAN, INF = math.nan, math.inf
 NO_ID = 4294967295
 PLACE = (1, 2, 3)
 
-# What is wrong: arguments of particle(), the field, its value as the message writes it.
+# Wrong values: arguments of particle(), the field, its value as the message writes it.
 BAD_PARTICLES = [
     ([(0, 0, 0)], {}, 'position', '(0, 0, 0)'),
     ([(NAN, 0, 1)], {}, 'position', '(nan, 0, 1)'),

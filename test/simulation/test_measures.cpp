@@ -1,4 +1,4 @@
-// What is told of how well a simulation keeps what it should keep.
+// Measures of how well a simulation keeps what it should keep.
 #include <gtest/gtest.h>
 
 #include <algorithm>

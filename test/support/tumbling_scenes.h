@@ -7,7 +7,7 @@
 
 namespace spherical_springs::core::testing {
 
-/// What a random scene has, all at rest at first.
+/// The contents of a random scene, all at rest at first.
 struct Tumbling {
   std::uint32_t particles = 12;
   int arcs = 24, triangles = 12, oriented = 0;
