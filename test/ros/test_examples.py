@@ -68,3 +68,21 @@ class TestClient(unittest.TestCase):
         self.assertEqual(1, outcome.returncode)
         self.assertEqual(1, len(outcome.stdout.splitlines()), outcome.stdout)
         self.assertIn('there is no node /nobody/spherical_springs', outcome.stdout)
+
+
+class TestSharingOut(unittest.TestCase):
+    """share_out.py, with two nodes of which one is not there."""
+
+    def test_another_node_does_the_work(self):
+        with NodeProcess(name='/' + PACKAGE, running='false', environment={'ROS_NAMESPACE': '/here'}):
+            NodeClient('/here/' + PACKAGE)
+            outcome = subprocess.run(
+                ['rosrun', PACKAGE, 'share_out.py', '/here/' + PACKAGE, '/gone/' + PACKAGE,
+                 '--starts', '5', '--directions', '6'], timeout=2 * LONG, text=True,
+                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertEqual(0, outcome.returncode, outcome.stderr)
+        self.assertIn('/gone/spherical_springs is given up', outcome.stderr)
+        first, *directions = outcome.stdout.splitlines()
+        # An octahedron: 12 angles of pi / 2, and 3 of pi.
+        self.assertEqual('5 starts; the least energy is %.9g J' % (12 * math.pi ** 2 / 8), first)
+        self.assertEqual(6, len(directions))

@@ -16,20 +16,25 @@ from scenes import particle
 
 LAUNCH = os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch')
 FILES = {'spherical_springs': (), 'octant': (), 'pan_tilt': (), 'viewing_directions': (),
-         'mesh': ('mesh:=a.obj',)}
+         'mesh': ('mesh:=a.obj',), 'host': ('host:=10.0.0.2', 'namespace:=far')}
 ARGUMENTS = {'time_step': 0.5, 'integrator': 'euler', 'publish_rate': 7, 'real_time_factor': 2.5,
              'frame_id': 'globe', 'radius': 3.5, 'threads': 3, 'spring_damping': 'own',
              'max_particles': 100, 'max_springs': 200, 'scene_directory': '/tmp/scenes'}
 
 
-def loaded(name, *arguments):
-    """The node that a file starts, and its parameters."""
+def configuration(name, *arguments):
     config = roslaunch.config.ROSLaunchConfig()
     roslaunch.xmlloader.XmlLoader().load(
         os.path.join(LAUNCH, name + '.launch'), config, argv=[*FILES[name], *arguments],
         verbose=False)
+    return config
+
+
+def loaded(name, *arguments):
+    """The node that a file starts, and its parameters."""
+    config = configuration(name, *arguments)
     node, = (node for node in config.nodes if node.type == PACKAGE + '_node')
-    prefix = '/' + node.name + '/'
+    prefix = node.namespace + node.name + '/'
     return node, {key[len(prefix):]: parameter.value
                   for key, parameter in config.params.items() if key.startswith(prefix)}
 
@@ -59,7 +64,7 @@ class TestLaunchFiles(unittest.TestCase):
         for name in FILES:
             _, parameters = loaded(name, 'running:=false')
             self.assertFalse(parameters['running'])
-            scene = '' if name in ('spherical_springs', 'mesh') else name + '.json'
+            scene = '' if name in ('spherical_springs', 'mesh', 'host') else name + '.json'
             self.assertEqual(scene, os.path.basename(parameters['scene']))
 
     def test_what_becomes_of_the_node_that_ends(self):
@@ -70,6 +75,17 @@ class TestLaunchFiles(unittest.TestCase):
             self.assertTrue(loaded(name, 'respawn:=true')[0].respawn)
             if name != 'mesh':  # whose output is the map
                 self.assertEqual('log', loaded(name, 'output:=log')[0].output)
+
+
+class TestHost(unittest.TestCase):
+    def test_the_node_is_on_the_other_machine(self):
+        config = configuration('host', 'user:=anna', 'env_loader:=/home/anna/env.sh')
+        config.assign_machines()
+        node, = config.nodes
+        self.assertEqual('/far/', node.namespace)
+        machine = node.machine
+        self.assertEqual(('10.0.0.2', 'anna', '/home/anna/env.sh'),
+                         (machine.address, machine.user, machine.env_loader))
 
 
 class TestRespawn(unittest.TestCase):
