@@ -46,8 +46,8 @@ def draw_octant(figure, moments):
 
 
 def draw_relaxation(figure, relaxed):
-    heading(figure, 4.45, "Solid-angle springs give each face of a mesh of {:,} vertices its fair "
-            "share of the sphere".format(len(relaxed.surface)))
+    heading(figure, 4.45, "A map gives each face of a mesh of {:,} vertices its fair share of the "
+            "sphere".format(len(relaxed.surface)))
     eye = drawing.Eye(MESH_EYE)
     size = 3.5
     surface, before, after = (place(figure, 0.25 + i * (size + 0.05), 0.35, size)

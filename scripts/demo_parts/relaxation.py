@@ -1,4 +1,4 @@
-"""A bumpy mesh of unequal areas, relaxed on the sphere until each face has its fair share."""
+"""A bumpy mesh of unequal areas, mapped to the sphere so that each face has its fair share."""
 import collections
 import subprocess
 
@@ -13,9 +13,9 @@ Map = collections.namedtuple("Map", "points log_ratios")
 
 def relax():
     """Makes the mesh, has relax_mesh map it, and prints and returns what became of it."""
-    print("\n2. A bumpy mesh on the sphere: solid-angle springs at the faces' shares of 4 pi,")
-    print("   and weak angle springs at rest on the edges; spread: standard deviation of")
-    print("   log(share of the sphere / share of the surface)\n", flush=True)
+    print("\n2. A bumpy mesh on the sphere, mapped so that each face has its share of 4 pi;")
+    print("   spread: standard deviation of log(share of the sphere / share of the surface)\n",
+          flush=True)
     start, faces, lines = mesh.icosphere(levels=5, line_level=3)
     surface = mesh.bumpy(start)
     mesh.write_obj(SURFACE, surface, faces)

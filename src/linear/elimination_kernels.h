@@ -13,11 +13,17 @@ struct FrontMatrix {
   std::ptrdiff_t own_size, rest_size;
 };
 
+/// Calls back in the middle of the elimination of a large matrix, several times a second.
+struct Interlude {
+  void (*call)(const void* data);  ///< what it throws comes out; the matrix is then of no use
+  const void* data;
+};
+
 struct EliminationKernels {
   /// Leaves the Cholesky factor of the first unknowns in `own` and `below`, and what is to be added
   /// to the matrix of the others in `rest`.
   /// @return whether `own` is positive definite; else the matrix is of no use.
-  bool (*eliminate)(const FrontMatrix& front);
+  bool (*eliminate)(const FrontMatrix& front, const Interlude& interlude);
 };
 
 /// Results of different instruction sets differ by rounding.

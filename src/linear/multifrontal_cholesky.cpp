@@ -202,8 +202,11 @@ void MultifrontalCholesky::factorise(std::size_t p, const Blocks<double, 2>& val
     if (front.definite) addChild(front, fronts_[child], true);
   }
   if (!front.definite) return;
+  const Interlude check{
+      [](const void* checkpoint) { (*static_cast<const Checkpoint*>(checkpoint))(); },
+      &checkpoint_};
   front.definite = eliminationKernels().eliminate(
-      {front.own.data(), front.below.data(), front.rest.data(), own, rest});
+      {front.own.data(), front.below.data(), front.rest.data(), own, rest}, check);
   if (!front.definite) return;
   for (const std::uint32_t child : part.children) addChild(front, fronts_[child], false);
 }

@@ -13,4 +13,7 @@ bool surelyPositive(const Vector3& a, const Vector3& b, const Vector3& c);
 /// is one to one. Positive faces alone may cover the sphere several times.
 bool coversOnce(const Faces& faces, const Points& points);
 
+/// Standard deviation of log (area / share) of faces that are all positive. Takes no memory.
+double spreadOf(const Faces& faces, const Eigen::VectorXd& shares, const Points& points);
+
 }  // namespace spherical_springs::mesh

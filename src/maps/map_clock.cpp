@@ -5,7 +5,7 @@ namespace spherical_springs::mesh {
 bool MapClock::goOn() {
   const double now = elapsed();
   const bool in_time = now < options_.max_time;
-  if (!options_.go_on(in_time ? now / options_.max_time : 1) || !in_time) ended_ = true;
+  if (!options_.go_on({in_time ? now / options_.max_time : 1, spread_}) || !in_time) ended_ = true;
   last_call_ = elapsed();
   return !ended_;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <thread>
 
 #include "spherical_springs/maps/sphere_map.h"
@@ -26,18 +28,21 @@ class MapClock {
   /// @throw TimeIsOver, and what `go_on` throws.
   void check();
 
-  void haveMap() { has_map_ = true; }
-  bool hasMap() const { return has_map_; }
+  /// Tells of the best map so far. For the thread that made the clock.
+  void haveMap(double spread) { spread_ = std::min(spread, std::numeric_limits<double>::max()); }
+  bool hasMap() const { return spread_ != kNoMap; }
 
   /// Ends the search, as memory has run out. For the thread that made the clock.
   void endWithoutMemory() { out_of_memory_ = ended_ = true; }
   bool outOfMemory() const { return out_of_memory_; }
 
   /// Whether to go on, which is so without a map whatever the time.
-  bool ended() const { return ended_ && has_map_; }
+  bool ended() const { return ended_ && hasMap(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  static constexpr double kNoMap = std::numeric_limits<double>::infinity();
 
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
@@ -46,7 +51,8 @@ class MapClock {
   const Clock::time_point begin_ = Clock::now();
   double last_call_ = 0;  // of `go_on` [s]
   bool out_of_memory_ = false;
-  std::atomic<bool> ended_{false}, has_map_{false};
+  std::atomic<bool> ended_{false};
+  std::atomic<double> spread_{kNoMap};  // of the best map so far
 };
 
 }  // namespace spherical_springs::mesh

@@ -17,11 +17,12 @@
 namespace spherical_springs::mesh {
 namespace {
 
-constexpr double kRoundest = 0.1;  // weight of the faces' shape before the finish
-constexpr double kLowering = 0.3;  // of that weight from round to round
-constexpr double kSlow = 1e-2;     // drop of the energy in one step that ends a round
-constexpr double kNothing = 1e-9;  // drop that ends the finish
-constexpr double kFaint = 1e-9;    // shape that holds edges below pi, and hardly anything else
+constexpr double kRoundest = 0.1;   // weight of the faces' shape before the finish
+constexpr double kLowering = 0.3;   // of that weight from round to round
+constexpr double kSlow = 1e-2;      // drop of the energy in one step that ends a round
+constexpr double kNothing = 1e-9;   // drop that ends the finish
+constexpr double kFaint = 1e-9;     // shape that holds edges below pi, and hardly anything else
+constexpr double kOfAngles = 0.15;  // weight of the faces' shape where the angle weight is 1
 
 constexpr std::int32_t kMostCoarsest = 5000;  // vertices of a coarsest mesh
 
@@ -49,13 +50,11 @@ std::vector<std::int32_t> coarsestSizes(std::int32_t vertices) {
 }  // namespace
 
 Points Mapping::run(std::optional<Points> start) {
-  Candidates candidates;
-  Candidate best;
-  unlessItEnds([&] { search(std::move(start), candidates, best); });
-  if (best.points.size() == 0 && !candidates.empty()) best = std::move(candidates.back());
-  if (best.points.size() == 0) throw NoMap("no map without folds was found");
+  unlessItEnds([&] { search(std::move(start)); });
+  if (best_.points.size() == 0 && !candidates_.empty()) best_ = std::move(candidates_.back());
+  if (best_.points.size() == 0) throw NoMap("no map without folds was found");
   if (clock_.outOfMemory()) options_.out_of_memory();
-  return std::move(best.points);
+  return std::move(best_.points);
 }
 
 /// Works until time or memory is over, which ends the search where there is a map.
@@ -71,29 +70,30 @@ void Mapping::unlessItEnds(const Work& work) {
 }
 
 /// A candidate is moved into its place, which takes no memory, so that none is lost.
-void Mapping::search(std::optional<Points> start, Candidates& candidates, Candidate& best) {
+void Mapping::search(std::optional<Points> start) {
   constexpr double kPromising = 10;  // tolerances
   // Where starts are cheap, the best of several is finished: of some twenty for 800 vertices, and
   // of a small coarsest mesh and the mesh itself wherever that is one to begin with.
   const double several =
       std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
   std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
-  candidates.reserve(sizes.size() + 1);
-  if (start) add(roundedOff(std::move(*start)), candidates);
+  candidates_.reserve(sizes.size() + 1);
+  if (start) add(roundedOff(std::move(*start)));
   int tried = 0;
-  while (!clock_.hasMap() || (best.spread > wantedSpread() && clock_.goOn())) {
+  while (!clock_.hasMap() || (best_.spread > wantedSpread() && clock_.goOn())) {
     const bool promising =
-        !candidates.empty() && (candidates.back().spread < kPromising * wantedSpread() ||
-                                tried >= several || clock_.ended());
+        !candidates_.empty() && (candidates_.back().spread < kPromising * wantedSpread() ||
+                                 tried >= several || clock_.ended());
     if (!promising && !sizes.empty()) {
-      if (auto next = prepared(sizes.front())) add(std::move(*next), candidates);
+      if (auto next = prepared(sizes.front())) add(std::move(*next));
       sizes.erase(sizes.begin());
       ++tried;
-    } else if (!candidates.empty()) {
-      Candidate next = finished(std::move(candidates.back()));
-      candidates.pop_back();
+    } else if (!candidates_.empty()) {
+      Candidate chosen = std::move(candidates_.back());
+      candidates_.pop_back();
+      Candidate next = finished(std::move(chosen));
       tried = 0;
-      if (best.points.size() == 0 || next.spread < best.spread) best = std::move(next);
+      if (best_.points.size() == 0 || next.spread < best_.spread) best_ = std::move(next);
     } else {
       break;
     }
@@ -101,16 +101,25 @@ void Mapping::search(std::optional<Points> start, Candidates& candidates, Candid
 }
 
 /// Best last.
-void Mapping::add(Candidate candidate, Candidates& candidates) {
-  candidates.push_back(std::move(candidate));
-  std::sort(candidates.begin(), candidates.end(),
+void Mapping::add(Candidate candidate) {
+  candidates_.push_back(std::move(candidate));
+  std::sort(candidates_.begin(), candidates_.end(),
             [](const Candidate& a, const Candidate& b) { return a.spread > b.spread; });
+}
+
+/// Tells the clock of the map that would come out now, where one under way has a spread.
+void Mapping::tellOfMap(double spread) {
+  spread = std::min(spread, best_.spread);
+  if (!candidates_.empty()) spread = std::min(spread, candidates_.back().spread);
+  clock_.haveMap(spread);
 }
 
 /// Where areas are not all that counts, the first map is as good as any.
 double Mapping::wantedSpread() const {
   return options_.angle_weight > 0 ? std::numeric_limits<double>::max() : options_.tolerance;
 }
+
+double Mapping::wantedShape() const { return kOfAngles * options_.angle_weight; }
 
 /// A map that begins without the largest face, or, where that does not become one again, without
 /// the next largest.
@@ -199,9 +208,11 @@ std::optional<Mapping::Candidate> Mapping::prepared(std::int32_t size) {
 Mapping::Candidate Mapping::roundedOff(Points points) {
   constexpr double kLeastShape = 1e-5;
   constexpr double kAlikeFrom = 1e-3;  // where areas are right enough for all faces to count alike
-  clock_.haveMap();
-  return improved({std::move(points)}, [&](MapEnergy& energy, MapDescent& descent) {
-    for (double shape = kRoundest; shape > std::max(options_.angle_weight, kLeastShape);
+  Candidate start{std::move(points)};
+  start.spread = spreadOf(faces_, shares_, start.points);
+  tellOfMap(start.spread);
+  return improved(std::move(start), [&](MapEnergy& energy, MapDescent& descent) {
+    for (double shape = kRoundest; shape > std::max(wantedShape(), kLeastShape);
          shape *= kLowering) {
       energy.setShape(shape);
       energy.setWeights(shape > kAlikeFrom ? FaceWeights::root_of_share : FaceWeights::equal);
@@ -214,8 +225,8 @@ Mapping::Candidate Mapping::roundedOff(Points points) {
 Mapping::Candidate Mapping::finished(Candidate candidate) {
   return improved(std::move(candidate), [&](MapEnergy& energy, MapDescent& descent) {
     if (options_.angle_weight > 0) {
-      energy.setShape(options_.angle_weight);
-      descent.run(FaceHessian::exact, kNothing, [&] { return clock_.goOn(); });
+      energy.setShape(wantedShape());
+      descent.run(FaceHessian::exact, kNothing, [&] { return wanting(energy); });
     } else {
       finishAreas(energy, descent);
     }
@@ -272,7 +283,9 @@ bool Mapping::hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile
 
 /// Whether to go on, towards the tolerance unless areas are not all that counts.
 bool Mapping::wanting(const MapEnergy& energy) {
-  return clock_.goOn() && (options_.angle_weight > 0 || energy.spread() > options_.tolerance);
+  const double spread = energy.spread();
+  tellOfMap(spread);
+  return clock_.goOn() && (options_.angle_weight > 0 || spread > options_.tolerance);
 }
 
 }  // namespace spherical_springs::mesh

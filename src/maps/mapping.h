@@ -32,8 +32,9 @@ class Mapping {
 
   template <class Work>
   void unlessItEnds(const Work& work);
-  void search(std::optional<Points> start, Candidates& candidates, Candidate& best);
-  void add(Candidate candidate, Candidates& candidates);
+  void search(std::optional<Points> start);
+  void add(Candidate candidate);
+  void tellOfMap(double spread);
   std::optional<Points> coarsestMap(const MeshLevel& level);
   std::optional<Points> coarsestMap(const MeshLevel& level, Eigen::Index cut);
   std::optional<Points> evenedOut(const Decimation& meshes);
@@ -45,6 +46,7 @@ class Mapping {
   void finishAreas(MapEnergy& energy, MapDescent& descent);
   bool hopped(BasinHopping& hopping, MapEnergy& energy, double worthwhile);
   double wantedSpread() const;
+  double wantedShape() const;
   bool wanting(const MapEnergy& energy);
 
   const Faces& faces_;
@@ -53,6 +55,8 @@ class Mapping {
   const MapOptions& options_;
   MapClock clock_;
   const core::Checkpoint checkpoint_ = [this] { clock_.check(); };
+  Candidates candidates_;  // that are not finished, the best last
+  Candidate best_;         // of those that are
 };
 
 }  // namespace spherical_springs::mesh

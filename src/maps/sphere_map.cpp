@@ -51,8 +51,7 @@ void requireOptions(const MapOptions& options) {
       throw std::invalid_argument(name + " is " + text(value) + "; allowed: " + range);
     }
   };
-  require(options.angle_weight >= 0 && std::isfinite(options.angle_weight), "angle_weight",
-          options.angle_weight, "0 or more");
+  core::requireInside(kAngleWeights, options.angle_weight, "angle_weight");
   require(options.tolerance >= 0, "tolerance", options.tolerance, "0 or more");
   require(options.max_time >= 0, "max_time", options.max_time, "0 or more [s]");
   require(options.threads >= 1, "threads", options.threads, "1 or more");

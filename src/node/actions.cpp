@@ -1,28 +1,18 @@
 #include "node/actions.h"
 
-#include <actionlib/server/action_server.h>
 #include <ros/serialization.h>
+#include <spherical_springs/MapMeshAction.h>
 #include <spherical_springs/RelaxAction.h>
 #include <spherical_springs/StepAction.h>
 
-#include <boost/make_shared.hpp>
-#include <chrono>
-#include <exception>
-#include <functional>
+#include <cmath>
 #include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 
-#include "node/faults.h"
-#include "node/refusals.h"
-#include "node/throttle.h"
+#include "node/action_server.h"
 
 namespace spherical_springs {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using actionlib_msgs::GoalStatus;
 
 /// Copies a message into one of another name that has the same fields.
 template <class To, class From>
@@ -41,7 +31,7 @@ To sameFields(const From& from) {
 
 struct RelaxWork {
   using ActionSpec = RelaxAction;
-  using Service = Relax;
+  using Doer = Handlers;
   using Progress = core::RelaxProgress;
 
   static constexpr auto kName = "relax";
@@ -58,15 +48,17 @@ struct RelaxWork {
     return feedback;
   }
 
-  static void handle(Handlers& handlers, const Relax::Request& request, Answer<Relax>& answer,
+  static void handle(Handlers& handlers, const RelaxGoal& goal, RelaxResult& result,
                      core::RelaxFollower& follower) {
-    handlers.relax(request, answer, &follower);
+    Answer<Relax> answer;
+    handlers.relax(sameFields<Relax::Request>(goal), answer, &follower);
+    result = sameFields<RelaxResult>(answer.response);
   }
 };
 
 struct StepWork {
   using ActionSpec = StepAction;
-  using Service = Step;
+  using Doer = Handlers;
   using Progress = core::StepProgress;
 
   static constexpr auto kName = "step";
@@ -80,152 +72,42 @@ struct StepWork {
     return feedback;
   }
 
-  static void handle(Handlers& handlers, const Step::Request& request, Answer<Step>& answer,
+  static void handle(Handlers& handlers, const StepGoal& goal, StepResult& result,
                      core::StepFollower& follower) {
-    handlers.step(request, answer, &follower);
+    Answer<Step> answer;
+    handlers.step(sameFields<Step::Request>(goal), answer, &follower);
+    result = sameFields<StepResult>(answer.response);
   }
 };
 
-template <class Work>
-using ResultOf = typename Work::ActionSpec::_action_result_type::_result_type;
+struct MapWork {
+  using ActionSpec = MapMeshAction;
+  using Doer = MapHandler;
+  using Progress = mesh::MapProgress;
 
-/// A goal while the work for it is done. Whoever has cancelled it, the client or ~cancel, it ends
-/// as preempted.
-template <class Work>
-class GoalUnderWay : public core::Follower<typename Work::Progress> {
- public:
-  using Goal = actionlib::ServerGoalHandle<typename Work::ActionSpec>;
-  using Result = ResultOf<Work>;
-  using Progress = typename Work::Progress;
+  static constexpr auto kName = "map_mesh";
 
-  explicit GoalUnderWay(const Goal& goal) : goal_(goal) {}
-
-  bool goesOn(const Progress& progress) noexcept override {
-    bool goes_on = true;
-    runLoggingFaults("feedback of an action is left out", [&] {
-      accept(progress);
-      goes_on = goal_.getGoalStatus().status != GoalStatus::PREEMPTING;
-      const double elapsed = std::chrono::duration<double>(Clock::now() - begin_time_).count();
-      if (!throttle_.isDue()) return;
-      const auto feedback = Work::feedback(*begin_, progress, elapsed);
-      if (feedback) goal_.publishFeedback(*feedback);
-    });
-    return goes_on;
+  static std::optional<MapMeshFeedback> feedback(const Progress&, const Progress& now,
+                                                 double elapsed) {
+    MapMeshFeedback feedback;
+    feedback.progress = now.fraction;
+    feedback.spread = std::isinf(now.spread) ? 0 : now.spread;
+    feedback.wall_time = elapsed;
+    return feedback;
   }
 
-  void cancelled() noexcept override { cancelled_ = true; }
-
-  void end(typename Work::Service::Response& response) {
-    accept({});
-    response.success = true;
-    const auto result = sameFields<Result>(response);
-    if (cancelled_) {
-      goal_.setCanceled(result, result.message);
-    } else {
-      goal_.setSucceeded(result, result.message);
-    }
+  static void handle(MapHandler& handler, const MapMeshGoal& goal, MapMeshResult& result,
+                     MapFollower& follower) {
+    handler.map(goal, result, follower);
   }
-
-  void fail(const char* reason) {
-    Result result;
-    result.message = reason;
-    if (begin_) {
-      goal_.setAborted(result, reason);
-    } else {
-      goal_.setRejected(result, reason);
-    }
-  }
-
- private:
-  void accept(const Progress& progress) {
-    if (begin_) return;
-    begin_ = progress;
-    begin_time_ = Clock::now();
-    throttle_.isDue();  // there is nothing to tell yet
-    goal_.setAccepted();
-  }
-
-  Goal goal_;
-  std::optional<Progress> begin_;
-  Clock::time_point begin_time_;
-  Throttle throttle_{std::chrono::milliseconds(100)};
-  bool cancelled_ = false;
-};
-
-/// Work for a thread that calls back.
-class Task : public ros::CallbackInterface {
- public:
-  explicit Task(std::function<void()> work) : work_(std::move(work)) {}
-
-  CallResult call() override {
-    work_();
-    return Success;
-  }
-
- private:
-  const std::function<void()> work_;
-};
-
-/// One action.
-template <class Work>
-class WorkServer {
- public:
-  WorkServer(const ros::NodeHandle& receiving, ros::CallbackQueueInterface& calls,
-             Handlers& handlers, News& news)
-      : calls_(calls),
-        handlers_(handlers),
-        news_(news),
-        refusals_(Work::kName, news),
-        // A goal sees for itself whether it has been cancelled.
-        server_(
-            receiving, Work::kName, [this](const Goal& goal) { receive(goal); }, [](const Goal&) {},
-            false) {
-    server_.start();
-  }
-
- private:
-  using Server = actionlib::ActionServer<typename Work::ActionSpec>;
-  using Goal = typename Server::GoalHandle;
-  using Service = typename Work::Service;
-
-  void receive(const Goal& goal) {
-    calls_.addCallback(boost::make_shared<Task>([this, goal] { work(goal); }));
-  }
-
-  void work(Goal goal) {
-    if (goal.getGoalStatus().status == GoalStatus::RECALLING) {
-      constexpr auto kNothingDone = "cancelled before it began; nothing has changed";
-      ResultOf<Work> result;
-      result.message = kNothingDone;
-      goal.setCanceled(result, kNothingDone);
-      return;
-    }
-    const StatusChange told_at_the_end(news_);
-    GoalUnderWay<Work> under_way(goal);
-    Answer<Service> answer;
-    try {
-      const auto request = sameFields<typename Service::Request>(*goal.getGoal());
-      Work::handle(handlers_, request, answer, under_way);
-    } catch (const std::exception& fault) {
-      refusals_.tell(fault);
-      under_way.fail(reasonOf(fault));
-      return;
-    }
-    under_way.end(answer.response);
-  }
-
-  ros::CallbackQueueInterface& calls_;
-  Handlers& handlers_;
-  News& news_;
-  Refusals refusals_;
-  Server server_;  // last, so that its callbacks end before what these use
 };
 
 }  // namespace
 
 Actions::Actions(const ros::NodeHandle& receiving, ros::CallbackQueueInterface& calls,
-                 Handlers& handlers, News& news)
+                 Handlers& handlers, MapHandler& mapper, News& news)
     : servers_{std::make_shared<WorkServer<RelaxWork>>(receiving, calls, handlers, news),
-               std::make_shared<WorkServer<StepWork>>(receiving, calls, handlers, news)} {}
+               std::make_shared<WorkServer<StepWork>>(receiving, calls, handlers, news),
+               std::make_shared<WorkServer<MapWork>>(receiving, calls, mapper, news)} {}
 
 }  // namespace spherical_springs

@@ -276,7 +276,8 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
 
 void Handlers::cancel(const std_srvs::Trigger::Request&, Answer<std_srvs::Trigger>& answer) {
   answer.reserve(kMessageRoom);
-  answer.response.message = runner_.cancel() ? "cancelling" : "nothing was under way";
+  const bool maps = mappings_.cancel();
+  answer.response.message = runner_.cancel() || maps ? "cancelling" : "nothing was under way";
 }
 
 }  // namespace spherical_springs

@@ -18,6 +18,7 @@
 #include <string>
 
 #include "node/answer.h"
+#include "node/map_turn.h"
 #include "node/news.h"
 #include "node/scene_directory.h"
 #include "simulation/runner.h"
@@ -29,10 +30,16 @@ namespace spherical_springs {
 /// takes memory. A follower, of a call that may take long, is null for none.
 class Handlers {
  public:
-  /// The arguments must live longer. `frame_id`: that of energies.
-  Handlers(core::Runner& runner, News& news, const SceneDirectory& directory,
+  /// The arguments must live longer. `mappings`: those that `cancel` ends too. `frame_id`: that of
+  /// energies.
+  Handlers(core::Runner& runner, News& news, MapTurn& mappings, const SceneDirectory& directory,
            const core::SceneLimits& limits, const std::string& frame_id)
-      : runner_(runner), news_(news), directory_(directory), limits_(limits), frame_id_(frame_id) {}
+      : runner_(runner),
+        news_(news),
+        mappings_(mappings),
+        directory_(directory),
+        limits_(limits),
+        frame_id_(frame_id) {}
 
   void addParticles(const AddParticles::Request& request, Answer<AddParticles>& answer);
   void setParticles(const SetParticles::Request& request, Answer<SetParticles>& answer);
@@ -57,6 +64,7 @@ class Handlers {
  private:
   core::Runner& runner_;
   News& news_;
+  MapTurn& mappings_;
   const SceneDirectory& directory_;
   const core::SceneLimits limits_;
   const std::string frame_id_;

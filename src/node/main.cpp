@@ -13,6 +13,8 @@
 #include "node/callback_threads.h"
 #include "node/faults.h"
 #include "node/handlers.h"
+#include "node/map_handler.h"
+#include "node/map_turn.h"
 #include "node/marker_publisher.h"
 #include "node/news.h"
 #include "node/parameters.h"
@@ -104,19 +106,23 @@ void run() {
   const RequestMemory request_memory;
   Threads threads;
   News news;
-  Handlers handlers(runner, news, directory, limits, parameters.frame_id);
+  MapTurn mappings;
+  Handlers handlers(runner, news, mappings, directory, limits, parameters.frame_id);
+  MapHandler mapper(runner, news, mappings, limits, parameters.simulation().system.threads);
   Publisher publisher(threads.sampling.handle(node), threads.reporting.handle(node), runner, news,
                       parameters);
   MarkerPublisher markers(threads.drawing.handle(node), runner, parameters);
   const Services services(threads.calls.handle(node), threads.cancelling.handle(node),
                           threads.pausing.handle(node), handlers, news, limits);
-  const Actions actions(threads.receiving.handle(node), threads.calls.queue(), handlers, news);
+  const Actions actions(threads.receiving.handle(node), threads.calls.queue(), handlers, mapper,
+                        news);
   Stepper stepper(threads.ticking.handle(node), runner, parameters);
   const Reconfiguration reconfiguration(threads.reconfiguring.handle(node), runner, news, stepper,
                                         publisher, markers, parameters);
   threads.start();
   tellOfStart(parameters, directory, runner);
   ros::waitForShutdown();
+  mappings.close();
   runner.close();
   threads.stop();
 }

@@ -9,8 +9,8 @@ struct Interrupted : std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Keeps the first SIGINT and the first SIGTERM in mind from here on; a second one ends the program
-/// as usual. To be called after `ros::init` with `NoSigintHandler`.
+/// Keeps the first SIGINT or SIGTERM in mind from here on; a second one ends the program as usual.
+/// ROS, if at all, is to be initialised with `NoSigintHandler`.
 void keepInterruptions();
 
 /// Whether there has been a signal.

@@ -4,11 +4,13 @@
 #include <boost/lexical_cast/try_lexical_convert.hpp>
 #include <boost/program_options.hpp>
 #include <iostream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
 #include "base/files.h"
 #include "relax_mesh/input_path.h"
+#include "spherical_springs/maps/sphere_map.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::relax_mesh {
@@ -17,16 +19,17 @@ namespace {
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
+constexpr double kMost = std::numeric_limits<double>::max();
+
 /// Not by Boost, which shows a text that is none as it is, however long.
-double parseAngleWeight(const std::string& text) {
-  constexpr core::Range kAllowed{0, 1e6, "0 to 1e6"};
-  double weight;
-  if (!boost::conversion::try_lexical_convert(text, weight)) {
-    throw std::invalid_argument("--angle-weight is " + core::quoted(text) +
-                                "; allowed: " + kAllowed.allowed);
+double parsed(const char* option, const core::Range& range, const std::string& text) {
+  double number;
+  if (!boost::conversion::try_lexical_convert(text, number)) {
+    throw std::invalid_argument(std::string(option) + " is " + core::quoted(text) +
+                                "; allowed: " + range.allowed);
   }
-  core::requireInside(kAllowed, weight, "--angle-weight");
-  return weight;
+  core::requireInside(range, number, option);
+  return number;
 }
 
 int parseHole(const std::string& text) {
@@ -69,10 +72,19 @@ po::options_description described(Options& options) {
     return po::value<std::string>()->notifier(
         [&](const std::string& text) { target = inputPath(text); });
   };
+  const auto towards = [](std::optional<mesh::Vector3>& target, const char* option) {
+    return po::value<std::string>()->notifier(
+        [&target, option](const std::string& text) { target = parseDirection(option, text); });
+  };
+  constexpr core::Range kSpread{0, kMost, "above 0", true}, kTime{0, kMost, "above 0 [s]", true};
+  const auto number = [](const char* option, const core::Range& range, auto& target) {
+    return po::value<std::string>()->notifier(
+        [=, &target](const std::string& text) { target = parsed(option, range, text); });
+  };
   po::options_description all(
       "relax_mesh: maps a closed surface to the sphere, every face to its share of the area.\n"
-      "The node at work is left paused, with the map in place of the scene that it had. Where "
-      "the node fails meanwhile, the map is written without its part, with a warning.\n\nOptions");
+      "Ctrl-C ends the search: the best map so far is written. A second one ends the command at "
+      "once.\n\nOptions");
   auto add = all.add_options();
   add("help", "show this");
   add("mesh", input(options.mesh)->required(),
@@ -90,10 +102,6 @@ po::options_description described(Options& options) {
           ->notifier([&](const std::string& text) { options.projection = parseProjection(text); }),
       "of the sphere to texture coordinates: longitude-latitude, equal-area-cylinder or "
       "equal-area-octahedron");
-  const auto towards = [](std::optional<mesh::Vector3>& target, const char* option) {
-    return po::value<std::string>()->notifier(
-        [&target, option](const std::string& text) { target = parseDirection(option, text); });
-  };
   add("pole", towards(options.placement.pole, "--pole"),
       "X,Y,Z: the vertex farthest in this direction comes to lie at the north pole of the map");
   add("front", towards(options.placement.front, "--front"),
@@ -108,17 +116,24 @@ po::options_description described(Options& options) {
     options.repairs.longest_hole = parseHole(text);
   }),
       "fill holes of up to so many edges");
-  add("angle-weight",
-      po::value<std::string>()->default_value("0")->notifier(
-          [&](const std::string& text) { options.angle_weight = parseAngleWeight(text); }),
-      "0: every face gets its share of the area, whatever becomes of its angles; the more (up to "
-      "1e6), the better corner angles are kept, and the worse areas");
+  add("spread", number("--spread", kSpread, options.spread),
+      "how good the map is to be: standard deviation of log(area / share) at which the search "
+      "ends; "
+      "0.001 if left out");
+  add("max-time", number("--max-time", kTime, options.max_time),
+      "how long it may take [s]; by the number of vertices if left out: 17, or more above 10,000 "
+      "of them");
+  add("angle-weight", number("--angle-weight", mesh::kAngleWeights, options.angle_weight),
+      "0 (if left out): every face gets its share of the area, whatever becomes of its angles; the "
+      "more (up to 1e6), the better corner angles are kept, and the worse areas");
   add("density", input(options.density),
       "file of positive numbers, one a face in the mesh's order; a face of density 2 gets twice "
       "the area on the sphere that it would get with 1");
   add("metrics", path(options.metrics), "CSV file to write: areas and angles, face by face");
-  add("node", po::value(&options.node)->default_value("spherical_springs"),
-      "name of the node that relaxes");
+  add("node", po::value(&options.node),
+      "name of a node that is to map, by its action map_mesh, in place of this process");
+  add("load", po::bool_switch(&options.load),
+      "with --node: the map, as springs, becomes the scene of the node");
   return all;
 }
 
@@ -190,6 +205,12 @@ std::optional<Options> parseOptions(const std::vector<std::string>& arguments) {
     refuse(fault);
   } catch (const po::error& fault) {
     refuse(fault);
+  }
+  if (values.count("node") > 0 && options.node.empty()) {
+    throw std::invalid_argument("--node is ''; allowed: the name of a node");
+  }
+  if (options.load && options.node.empty()) {
+    throw std::invalid_argument("--load is given without --node, whose scene it is about");
   }
   requireWritable(options);
   return options;

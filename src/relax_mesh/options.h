@@ -18,8 +18,11 @@ struct Options {
   mesh::Repairs repairs;
   mesh::Placement placement;
   mesh::Projection projection = mesh::Projection::longitude_latitude;
+  double spread = 1e-3;            ///< wanted
+  std::optional<double> max_time;  ///< wall [s]; nothing: by the size of the mesh
   double angle_weight = 0;
-  std::string node;
+  std::string node;   ///< empty where this process is to map
+  bool load = false;  ///< whether the node is to keep the map as its scene
 };
 
 /// Nothing where only help was asked for, which goes to standard output.

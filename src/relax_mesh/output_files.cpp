@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/checkpoint.h"
 #include "base/files.h"
-#include "relax_mesh/interruption.h"
 #include "surfaces/face_files.h"
 #include "surfaces/obj_file.h"
 #include "surfaces/placement.h"
@@ -30,11 +30,8 @@ class Writing {
   void write(const fs::path& path, const std::function<void(std::ostream&)>& content) {
     if (path.empty()) return;
     try {
-      throwIfInterrupted();
       core::replaceFile(path, content);
       add(written_, core::onOneLine(path), ", ");
-    } catch (const Interrupted& fault) {
-      interrupted_ = fault.what();
     } catch (const std::bad_alloc&) {
       add(faults_, "not enough memory to write " + core::onOneLine(path), "; ");
     } catch (const std::exception& fault) {
@@ -42,16 +39,14 @@ class Writing {
     }
   }
 
-  void requireSuccess() const {
-    std::string faults = faults_;
-    if (!interrupted_.empty()) add(faults, interrupted_, "; ");
-    if (faults.empty()) return;
+  const std::string& writtenFiles() const {
+    if (faults_.empty()) return written_;
     throw std::runtime_error(
-        faults + (written_.empty() ? "; no file has been written" : "; written: " + written_));
+        faults_ + (written_.empty() ? "; no file has been written" : "; written: " + written_));
   }
 
  private:
-  std::string written_, faults_, interrupted_;
+  std::string written_, faults_;
 };
 
 }  // namespace
@@ -61,22 +56,22 @@ mesh::TexturedSurface textureOf(const Options& options, const Task& task, const 
                         options.projection);
 }
 
-void writeFiles(const Options& options, const Task& task, const Points& map,
-                const mesh::FaceDistortion& faces) {
+std::string writeFiles(const Options& options, const Task& task, const Points& map,
+                       const mesh::FaceDistortion& faces) {
   Writing writing;
   writing.write(options.output, [&](std::ostream& out) {
     mesh::writeObj(
         out,
         mesh::TriangleMesh{mesh::placed(task.surface, map, options.placement), task.surface.faces},
-        throwIfInterrupted);
+        core::passAll);
   });
   writing.write(options.uv, [&](std::ostream& out) {
-    mesh::writeObj(out, textureOf(options, task, map), throwIfInterrupted);
+    mesh::writeObj(out, textureOf(options, task, map), core::passAll);
   });
   writing.write(options.metrics, [&](std::ostream& out) {
-    mesh::writeMetrics(out, task.shares, faces, throwIfInterrupted);
+    mesh::writeMetrics(out, task.shares, faces, core::passAll);
   });
-  writing.requireSuccess();
+  return writing.writtenFiles();
 }
 
 }  // namespace spherical_springs::relax_mesh

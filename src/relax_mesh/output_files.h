@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "relax_mesh/options.h"
 #include "relax_mesh/task.h"
@@ -14,10 +15,11 @@ namespace spherical_springs::relax_mesh {
 /// Returns the surface with the texture coordinates that the options ask for.
 mesh::TexturedSurface textureOf(const Options& options, const Task& task, const Points& map);
 
-/// Writes every file that can be written, each whole.
+/// Writes every file that can be written, each whole. A first signal does not stop it.
+/// @return their names, as a list in words.
 /// @throw std::runtime_error, after that, with the reasons why some could not, and the names of
 /// those that have been.
-void writeFiles(const Options& options, const Task& task, const Points& map,
-                const mesh::FaceDistortion& faces);
+std::string writeFiles(const Options& options, const Task& task, const Points& map,
+                       const mesh::FaceDistortion& faces);
 
 }  // namespace spherical_springs::relax_mesh

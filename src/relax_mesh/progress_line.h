@@ -1,26 +1,29 @@
-// For one who waits at a terminal.
+// For one who waits.
 #pragma once
 
-#include <string>
+#include <chrono>
+
+#include "spherical_springs/maps/sphere_map.h"
 
 namespace spherical_springs::relax_mesh {
 
-/// A line on standard error that tells how far something has come, and goes when that is over.
-/// Where standard error is no terminal there is none. For one thread at a time.
+/// Tells on standard error how far a map has come: on a terminal by a line that changes, and goes
+/// when that is over, elsewhere by a line every few seconds. For one thread at a time.
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string what);
+  ProgressLine();
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// @param fraction 0 to 1
-  void show(double fraction);
+  void show(const mesh::MapProgress& progress);
 
  private:
-  const std::string what_;
-  const bool seen_;
-  int shown_ = -1;  // [%]
+  using Clock = std::chrono::steady_clock;
+
+  const bool on_terminal_;
+  bool shown_ = false;
+  Clock::time_point next_;
 };
 
 }  // namespace spherical_springs::relax_mesh

@@ -9,7 +9,7 @@
 #include "base/files.h"
 #include "maps/topological_sphere.h"
 #include "relax_mesh/interruption.h"
-#include "spherical_springs/maps/sphere_map.h"
+#include "spherical_springs/maps/mesh_map.h"
 #include "surfaces/face_files.h"
 #include "surfaces/repairs.h"
 #include "surfaces/surface.h"
@@ -56,14 +56,17 @@ Values densitiesOfTriangles(const Values& densities, const mesh::Surface& surfac
   return result;
 }
 
-Values readShares(const Options& options, const Source& source) {
+void readShares(const Options& options, const Source& source, Task& task) {
   const Values areas = mesh::faceAreas(source.surface.mesh);
-  Values shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
-  if (options.density.empty()) return shares;
+  task.shares_from = options.mesh;
+  task.shares = about(options.mesh, [&] { return mesh::faceShares(areas); });
+  if (options.density.empty()) return;
+  task.shares_from = options.density;
   std::ifstream in = core::openToRead(options.density);
-  return about(options.density, [&] {
+  about(options.density, [&] {
     const Values densities = mesh::readDensities(in, source.file.faces(), throwIfInterrupted);
-    return mesh::faceShares(areas.cwiseProduct(densitiesOfTriangles(densities, source.surface)));
+    task.density = densitiesOfTriangles(densities, source.surface);
+    task.shares = mesh::faceShares(areas.cwiseProduct(task.density));
   });
 }
 
@@ -114,11 +117,14 @@ Task readTask(const Options& options) {
   Task task;
   task.repairs = repair(options, source);
   task.inside_out = mesh::volume(source.surface.mesh) < 0;
-  task.shares_from = options.density.empty() ? options.mesh : options.density;
-  task.shares = readShares(options, source);
+  readShares(options, source, task);
   if (!options.sphere.empty()) task.start = readStart(options.sphere, source);
   task.surface = std::move(source.surface.mesh);
   return task;
+}
+
+double timeFor(const Task& task, const Options& options) {
+  return options.max_time.value_or(mesh::usualTime(task.surface.vertices.cols()));
 }
 
 }  // namespace spherical_springs::relax_mesh

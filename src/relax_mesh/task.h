@@ -19,6 +19,7 @@ using core::Values;
 struct Task {
   mesh::TriangleMesh surface;
   std::vector<std::string> repairs;   ///< a sentence each
+  Values density;                     ///< one a face; empty: all alike
   Values shares;                      ///< of the sphere, one a face, summing to 4 pi [sr]
   std::filesystem::path shares_from;  ///< the file that has the last word on them
   std::optional<Points> start;        ///< one unit vector a vertex
@@ -41,5 +42,8 @@ auto about(const std::filesystem::path& path, const Use& use) {
 /// are not one a face, and for a start that has other faces than the surface or a vertex without
 /// direction.
 Task readTask(const Options& options);
+
+/// The wall time for the map [s], asked for or by the size of the mesh.
+double timeFor(const Task& task, const Options& options);
 
 }  // namespace spherical_springs::relax_mesh

@@ -203,6 +203,14 @@ TEST(Border, MeshesMap) {
   EXPECT_NEAR(faces.areas.sum(), 4 * kPi, 1e-9);
   EXPECT_LT((faces.areas - shares).norm(), 1e-2);
   EXPECT_LT(mesh::summary(faces).spread, 2e-3);
+  mesh::MapOptions options;
+  options.go_on = [](const mesh::MapProgress& progress) { return progress.spread >= 0; };
+  const mesh::MeshMap again = mesh::meshMap(surface, shares, map, options);
+  EXPECT_EQ(again.end, mesh::MapEnd::found);
+  EXPECT_TRUE(mesh::coversOnce(again.distortion));
+  EXPECT_EQ(mesh::centralProjection(surface), surface.vertices.colwise().normalized());
+  const Scene scene = mesh::sceneOfMap(surface.faces, shares, again.points, 0, {});
+  EXPECT_EQ(scene.springCount(), mesh::springCountOfMap(8));
   EXPECT_GT(mesh::volume(surface), 0);
 }
 
@@ -213,7 +221,9 @@ TEST(Border, RefusalsAreCaughtByTheirTypes) {
   EXPECT_THROW(requireInside({0, 1, "0 to 1"}, std::numeric_limits<double>::quiet_NaN(), "it"),
                NonFinite);
   mesh::MapOptions options;
-  options.go_on = [](double) -> bool { throw std::domain_error("from the client"); };
+  options.go_on = [](const mesh::MapProgress&) -> bool {
+    throw std::domain_error("from the client");
+  };
   EXPECT_THROW(mesh::sphereMap(octahedron(), Values::Constant(8, kPi / 2), options),
                std::domain_error);
 }

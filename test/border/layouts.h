@@ -5,7 +5,7 @@
 
 #include "simulation/runner.h"
 #include "spherical_springs/maps/distortion.h"
-#include "spherical_springs/maps/sphere_map.h"
+#include "spherical_springs/maps/mesh_map.h"
 
 namespace spherical_springs {
 
@@ -52,6 +52,7 @@ constexpr TypeLayout kLayouts[] = {
     layoutOf<mesh::Faces>("Faces"),
     layoutOf<mesh::TriangleMesh>("TriangleMesh"),
     layoutOf<mesh::MapOptions>("MapOptions"),
+    layoutOf<mesh::MeshMap>("MeshMap"),
     layoutOf<mesh::FaceDistortion>("FaceDistortion"),
     layoutOf<mesh::Distortion>("Distortion"),
 };

@@ -8,7 +8,8 @@
 
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/maps/distortion.h"
-#include "spherical_springs/maps/sphere_map.h"
+#include "spherical_springs/maps/map_scene.h"
+#include "spherical_springs/maps/mesh_map.h"
 #include "spherical_springs/measures.h"
 #include "spherical_springs/relaxation.h"
 #include "spherical_springs/scene_file.h"
@@ -245,6 +246,13 @@ TEST(Example, OfAMap) {
   //! [map]
   EXPECT_EQ(distortion.folded, 0);
   EXPECT_LE(distortion.spread, 0.01);
+  //! [map_scene]
+  options.go_on = [](const mesh::MapProgress& progress) { return progress.spread > 0.02; };
+  const mesh::MeshMap again = mesh::meshMap(octahedron, shares, map, options);
+  const Scene scene = mesh::sceneOfMap(octahedron.faces, shares, again.points, 0, SceneLimits());
+  //! [map_scene]
+  EXPECT_TRUE(mesh::coversOnce(again.distortion));
+  EXPECT_EQ(scene.particles().size(), 6u);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ Eigen::VectorXd sharesOf(const mesh::TriangleMesh& surface, double steepest) {
 void requireMapped(const mesh::TriangleMesh& surface, Effort effort) {
   const Eigen::VectorXd shares = sharesOf(surface, effort.steepest);
   mesh::MapOptions options;
-  options.go_on = [&](double) { return --effort.iterations > 0; };
+  options.go_on = [&](const mesh::MapProgress&) { return --effort.iterations > 0; };
   const core::Points map = mesh::sphereMap(surface, shares, options);
   core::fuzzing::requireUnitVectors(map);
   const mesh::Distortion distortion = summary(faceDistortion(surface, shares, map));

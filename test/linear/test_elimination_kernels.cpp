@@ -19,6 +19,8 @@ extern const EliminationKernels kAvx2EliminationKernels, kAvx512EliminationKerne
 
 namespace {
 
+const Interlude kNoInterlude{[](const void*) {}, nullptr};
+
 std::vector<EliminationKernels> kernelsHere() {
   std::vector<EliminationKernels> kernels = {kPlainEliminationKernels};
 #if defined(__x86_64__)
@@ -47,10 +49,11 @@ struct Parts {
 
 TEST(EliminationKernels, LeaveTheFactorAndWhatItAddsToTheRest) {
   for (const EliminationKernels& kernels : kernelsHere()) {
-    for (const auto& [own, rest] : {std::pair{1, 0}, {2, 4}, {7, 3}, {60, 100}, {131, 90}}) {
+    for (const auto& [own, rest] :
+         {std::pair{1, 0}, {2, 4}, {7, 3}, {60, 100}, {131, 90}, {300, 0}, {280, 290}}) {
       const Eigen::MatrixXd matrix = randomDefinite(own + rest);
       Parts parts(matrix, own);
-      ASSERT_TRUE(kernels.eliminate(parts.view()));
+      ASSERT_TRUE(kernels.eliminate(parts.view(), kNoInterlude));
       const Eigen::MatrixXd factor = parts.own.triangularView<Eigen::Lower>();
       const Eigen::MatrixXd added = parts.rest.selfadjointView<Eigen::Lower>();
       const double rounding = 1e-13 * matrix.norm();
@@ -90,8 +93,9 @@ TEST(EliminationKernels, ReadNothingBeyondTheirMatrices) {
       for (int rest = 0; rest < 20; ++rest) {
         Parts parts(randomDefinite(own + rest), own);
         GuardedMemory own_block(parts.own), below(parts.below), the_rest(parts.rest);
-        EXPECT_TRUE(kernels.eliminate({own_block.data(), below.data(), the_rest.data(),
-                                       parts.own.rows(), parts.rest.rows()}));
+        EXPECT_TRUE(kernels.eliminate(
+            {own_block.data(), below.data(), the_rest.data(), parts.own.rows(), parts.rest.rows()},
+            kNoInterlude));
       }
     }
   }
@@ -99,10 +103,26 @@ TEST(EliminationKernels, ReadNothingBeyondTheirMatrices) {
 
 TEST(EliminationKernels, TellWhatIsNotDefinite) {
   for (const EliminationKernels& kernels : kernelsHere()) {
-    Eigen::MatrixXd matrix = randomDefinite(90);
-    matrix(70, 70) = -1;
-    Parts parts(matrix, 80);
-    EXPECT_FALSE(kernels.eliminate(parts.view()));
+    for (const auto& [own, wrong] : {std::pair{80, 70}, {300, 20}, {300, 290}}) {
+      Eigen::MatrixXd matrix = randomDefinite(own + 10);
+      matrix(wrong, wrong) = -1;
+      Parts parts(matrix, own);
+      EXPECT_FALSE(kernels.eliminate(parts.view(), kNoInterlude)) << own << " " << wrong;
+    }
+  }
+}
+
+TEST(EliminationKernels, MayBeLeftInTheMiddle) {
+  struct Left {};
+  for (const EliminationKernels& kernels : kernelsHere()) {
+    Parts parts(randomDefinite(700), 300);
+    int calls = 0;
+    const Interlude count{[](const void* data) { ++**static_cast<int* const*>(data); }, nullptr};
+    int* const counter = &calls;
+    ASSERT_TRUE(kernels.eliminate(parts.view(), {count.call, &counter}));
+    EXPECT_GT(calls, 5);
+    const Interlude leave{[](const void*) { throw Left(); }, nullptr};
+    EXPECT_THROW(kernels.eliminate(parts.view(), leave), Left);
   }
 }
 

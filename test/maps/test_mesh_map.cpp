@@ -148,7 +148,7 @@ TEST(SphereMap, EndsWithAMapWhenItIsCancelled) {
   const TriangleMesh mesh = testing::star(4, 2, false, 5);
   MapOptions options = patient(0);
   int calls = 0;
-  options.go_on = [&](double) { return ++calls != 5; };
+  options.go_on = [&](const MapProgress&) { return ++calls != 5; };
   EXPECT_TRUE(coversOnce(mesh.faces, sphereMap(mesh, sharesOf(mesh), options)));
   EXPECT_LT(calls, 100);
 }
@@ -160,7 +160,7 @@ TEST(SphereMap, EndsWithAMapWhereverItIsCancelled) {
   for (const int most : {1, 10, 50, 100}) {
     MapOptions options = patient(0);
     int calls = 0;
-    options.go_on = [&](double) { return ++calls < most; };
+    options.go_on = [&](const MapProgress&) { return ++calls < most; };
     EXPECT_TRUE(coversOnce(mesh.faces, sphereMap(mesh, shares, options))) << most;
   }
 }
@@ -182,7 +182,7 @@ TEST(SphereMap, AsksWhetherToGoOnWhileThereIsNoMap) {
   MapOptions options;
   options.max_time = 0;
   int calls = 0;
-  options.go_on = [&](double) { return ++calls > 0; };
+  options.go_on = [&](const MapProgress&) { return ++calls > 0; };
   sphereMap(mesh, faceShares(areas), options);
   EXPECT_GT(calls, 100);
 }
@@ -191,8 +191,8 @@ TEST(SphereMap, EndsWithoutAMapWhereGoOnThrows) {
   const TriangleMesh mesh = testing::star(4, 2, false, 5);
   MapOptions options;
   options.max_time = 0;
-  options.go_on = [](double fraction) -> bool {
-    EXPECT_EQ(fraction, 1);
+  options.go_on = [](const MapProgress& progress) -> bool {
+    EXPECT_EQ(progress.fraction, 1);
     throw std::domain_error("enough");
   };
   EXPECT_THROW(sphereMap(mesh, sharesOf(mesh), options), std::domain_error);

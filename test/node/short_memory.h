@@ -14,6 +14,7 @@
 #include "failing_malloc.h"
 #include "node/answering_service.h"
 #include "node/handlers.h"
+#include "node/map_handler.h"
 #include "support/scenes.h"
 
 namespace spherical_springs {
@@ -42,10 +43,26 @@ inline std::string contentOf(const fs::path& path) {
   return content.str();
 }
 
+namespace testing {
+
+inline MapMeshGoal tetrahedronGoal() {
+  MapMeshGoal goal;
+  goal.mesh.vertices.resize(4);
+  goal.mesh.vertices[1].x = goal.mesh.vertices[2].y = goal.mesh.vertices[3].z = 1;
+  const std::uint32_t faces[][3] = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  goal.mesh.triangles.resize(4);
+  for (int f = 0; f < 4; ++f) {
+    for (int k = 0; k < 3; ++k) goal.mesh.triangles[f].vertex_indices[k] = faces[f][k];
+  }
+  return goal;
+}
+
+}  // namespace testing
+
 /// All of a node but what it needs a network for, with a scene that has moved.
 struct Node {
   explicit Node(const fs::path& directory)
-      : directory(directory), handlers(runner, news, this->directory, {}, "map") {
+      : directory(directory), handlers(runner, news, mappings, this->directory, {}, "map") {
     const core::Scene random = core::testing::randomScene(1, 10, 15, 0.1, 1);
     runner.change([&](core::Simulation& s) {
       s.addParticles(random.particles().items());
@@ -73,6 +90,7 @@ struct Node {
 
   core::Runner runner{{}, false};
   News news;
+  MapTurn mappings;
   SceneDirectory directory;
   Handlers handlers;
 };

@@ -7,6 +7,7 @@
 
 #include "node/conversion.h"
 #include "node/faults.h"
+#include "node/map_handler.h"
 #include "node/markers.h"
 #include "node/poses.h"
 #include "short_memory.h"
@@ -140,6 +141,39 @@ TEST_F(ShortMemoryTest, WhileItRelaxesAndDoesNotConverge) {
   Relax::Request request;
   request.tolerance = 1e-300;
   expectAllOrNothing<Relax>(&Handlers::relax, request);
+}
+
+class Unfollowed : public MapFollower {
+ public:
+  bool goesOn(const mesh::MapProgress&) noexcept override { return true; }
+  void cancelled() noexcept override {}
+};
+
+// Where memory runs out only when there is a map, that is loaded.
+TEST_F(ShortMemoryTest, WhileAMeshIsMapped) {
+  MapMeshGoal goal = testing::tetrahedronGoal();
+  goal.load = true;
+  int refusals = 0;
+  for (const long failing : {1L, ShortMemory::kAll}) {
+    bool succeeded = false;
+    for (long failures = 0; !succeeded; failures += 1 + failures / 8) {
+      Node node(directory_.path());
+      MapHandler handler(node.runner, node.news, node.mappings, {}, 1);
+      const std::string before = node.bits();
+      Unfollowed follower;
+      MapMeshResult result;
+      try {
+        const ShortMemory memory(failures, failing);
+        handler.map(goal, result, follower);
+        succeeded = result.message.find("memory") == std::string::npos;
+      } catch (const std::exception& fault) {
+        ++refusals;
+        ASSERT_STREQ(reasonOf(fault), "there is not enough memory for this");
+        ASSERT_EQ(node.bits(), before) << failures;
+      }
+    }
+  }
+  EXPECT_GT(refusals, 10);
 }
 
 TEST_F(ShortMemoryTest, WhileNothingIsCancelled) {

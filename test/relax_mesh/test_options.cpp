@@ -22,9 +22,10 @@ std::string reasonAgainst(std::vector<std::string> further) {
 }
 
 TEST(Options, AreRead) {
-  const auto options = parseOptions({"--mesh", "a b.obj", "--output=c.obj", "--sphere", "s.obj",
-                                     "--uv", "u.obj", "--density", "d", "--metrics", "m.csv",
-                                     "--angle-weight", "0.25", "--node", "n"});
+  const auto options = parseOptions(
+      {"--mesh",    "a b.obj", "--output=c.obj", "--sphere", "s.obj",          "--uv", "u.obj",
+       "--density", "d",       "--metrics",      "m.csv",    "--angle-weight", "0.25", "--node",
+       "n",         "--load",  "--spread",       "0.02",     "--max-time",     "1.5e2"});
   ASSERT_TRUE(options);
   EXPECT_EQ("a b.obj", options->mesh);
   EXPECT_EQ("c.obj", options->output);
@@ -34,6 +35,9 @@ TEST(Options, AreRead) {
   EXPECT_EQ("m.csv", options->metrics);
   EXPECT_EQ(0.25, options->angle_weight);
   EXPECT_EQ("n", options->node);
+  EXPECT_TRUE(options->load);
+  EXPECT_EQ(0.02, options->spread);
+  EXPECT_EQ(150, options->max_time);
 }
 
 TEST(Options, AreLeftOutWhereNobodyNeedsThem) {
@@ -42,7 +46,10 @@ TEST(Options, AreLeftOutWhereNobodyNeedsThem) {
   EXPECT_TRUE(options->sphere.empty());
   EXPECT_TRUE(options->uv.empty());
   EXPECT_EQ(0, options->angle_weight);
-  EXPECT_EQ("spherical_springs", options->node);
+  EXPECT_EQ(1e-3, options->spread);
+  EXPECT_FALSE(options->max_time);
+  EXPECT_EQ("", options->node);
+  EXPECT_FALSE(options->load);
   EXPECT_FALSE(parseOptions({"--help"}));
 }
 
@@ -79,6 +86,13 @@ TEST(Options, AreRefusedWithAReason) {
   EXPECT_EQ("--angle-weight is '1 '; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "1 "}));
   EXPECT_EQ("--angle-weight is -1; allowed: 0 to 1e6", reasonAgainst({"--angle-weight=-1"}));
   EXPECT_EQ("--angle-weight is nan; allowed: 0 to 1e6", reasonAgainst({"--angle-weight", "nan"}));
+  EXPECT_EQ("--spread is 'good'; allowed: above 0", reasonAgainst({"--spread", "good"}));
+  EXPECT_EQ("--spread is 0; allowed: above 0", reasonAgainst({"--spread", "0"}));
+  EXPECT_EQ("--spread is inf; allowed: above 0", reasonAgainst({"--spread", "inf"}));
+  EXPECT_EQ("--max-time is -2; allowed: above 0 [s]", reasonAgainst({"--max-time", "-2"}));
+  EXPECT_EQ("--max-time is nan; allowed: above 0 [s]", reasonAgainst({"--max-time", "nan"}));
+  EXPECT_EQ("--node is ''; allowed: the name of a node", reasonAgainst({"--node", ""}));
+  EXPECT_EQ("--load is given without --node, whose scene it is about", reasonAgainst({"--load"}));
   EXPECT_EQ("--uv is '/nowhere/u.obj'; allowed: a file in a directory that exists",
             reasonAgainst({"--uv", "/nowhere/u.obj"}));
   EXPECT_EQ("--uv is '/dev/null'; allowed: the name of a file",
@@ -92,8 +106,8 @@ TEST(Options, AreShownShortAndOnOneLine) {
   const std::string x(1000, 'x');
   EXPECT_EQ("unrecognised option '--" + x.substr(0, 98) + "...'" + help, reasonAgainst({"--" + x}));
   EXPECT_EQ("unrecognised option '--a?b=?[31m'" + help, reasonAgainst({"--a\nb=\033[31m"}));
-  EXPECT_EQ("option '--m=a?b' is ambiguous and matches '--mesh', and '--metrics'" + help,
-            reasonAgainst({"--m=a\nb"}));
+  EXPECT_EQ("option '--me=a?b' is ambiguous and matches '--mesh', and '--metrics'" + help,
+            reasonAgainst({"--me=a\nb"}));
   EXPECT_EQ("--angle-weight is '" + x.substr(0, 100) + "...' (1000 bytes)" + allowed,
             reasonAgainst({"--angle-weight", x}));
   EXPECT_EQ("--angle-weight is '1?2'" + allowed, reasonAgainst({"--angle-weight=1\n2"}));

@@ -12,9 +12,14 @@ FIGURES = ('spread', 'mean', 'worst face', 'folded', 'sum')
 
 
 class Outcome:
+    """`error` is what it says on standard error but for the lines of `progress`, which it writes
+    every few seconds where that is no terminal."""
+
     def __init__(self, process):
-        self.code, self.output, self.error = (
-            process.returncode, process.stdout, process.stderr.strip())
+        self.code, self.output = process.returncode, process.stdout
+        lines = process.stderr.strip().splitlines()
+        self.progress = [line for line in lines if line.startswith('mapping ...')]
+        self.error = '\n'.join(line for line in lines if line not in self.progress)
 
     def figures(self, when):
         """What the line of that name says of areas, by name."""
@@ -23,10 +28,11 @@ class Outcome:
 
 
 def command(**options):
-    """command(mesh='a.obj', angle_weight=1) asks for --mesh a.obj --angle-weight 1."""
+    """command(mesh='a.obj', angle_weight=1, load=True) asks for --mesh a.obj --angle-weight 1
+    --load."""
     return [roslib.packages.find_node(PACKAGE, 'relax_mesh')[0]] + [
         text for name, value in options.items()
-        for text in ('--' + name.replace('_', '-'), str(value))]
+        for text in ('--' + name.replace('_', '-'), str(value))[:1 if value is True else 2]]
 
 
 def relax_mesh(environment=None, longest_file=None, **options):

@@ -3,43 +3,17 @@
 import math
 import unittest
 
-import actionlib
 import numpy as np
 from actionlib_msgs.msg import GoalStatus
 from spherical_springs.msg import (
     RelaxAction, RelaxGoal, RelaxResult, StepAction, StepGoal, StepResult)
 
+from action_client import ActionClient
 from node_client import LONG, NodeProcess, NodeTest, Refused, wait_until
 from scenes import add_knot, add_octant, add_random_scene, exact, positions
 
 RELAXING_FOR_EVER = RelaxGoal(method='dynamics', tolerance=1e-30)
 STEPPING_FOR_EVER = StepGoal(steps=4294967295)
-
-
-class ActionClient(actionlib.SimpleActionClient):
-    """A client of one action that keeps the feedback of its goal."""
-
-    def __init__(self, node, name, action):
-        super().__init__(node.name + '/' + name, action)
-        if not self.wait_for_server():
-            raise AssertionError('there is no server of ' + name)
-        self.feedback = []
-
-    def begin(self, goal):
-        """Send a goal; return when it is under way."""
-        self.feedback = []
-        self.send_goal(goal, feedback_cb=self.feedback.append)
-        wait_until(lambda: self.get_state() == GoalStatus.ACTIVE)
-
-    def ended(self):
-        """The state, the text and the result of the goal, once it has ended."""
-        wait_until(lambda: self.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
-        wait_until(lambda: self.get_result() is not None)
-        return self.get_state(), self.get_goal_status_text(), self.get_result()
-
-    def outcome(self, goal):
-        self.send_goal(goal)
-        return self.ended()
 
 
 class ActionTest(NodeTest):

@@ -12,7 +12,7 @@ import rospkg
 from mesh_test import MeshTest
 from node_client import LONG, PACKAGE
 from relax_mesh import command, relax_mesh
-from scenes import particle, solid_angles
+from scenes import solid_angles
 from shapes import BROKEN, bumpy, mesh, star
 
 
@@ -239,7 +239,7 @@ class TestFiles(MeshTest):
 
 class TestRefusals(MeshTest):
     def refusal(self, **options):
-        """The reason; nothing has been written, and the node's scene is as it was."""
+        """The reason; nothing has been written."""
         outputs = {name: self.path(name) for name in ('output', 'uv', 'metrics')}
         for path in outputs.values():
             with open(path, 'w') as file:
@@ -255,7 +255,6 @@ class TestRefusals(MeshTest):
         return outcome.error
 
     def test_surfaces(self):
-        self.node.add_particles([particle((1, 0, 0))])
         for name, (content, pattern) in BROKEN.items():
             path = self.path('broken.obj')
             with open(path, 'wb') as file:
@@ -263,7 +262,6 @@ class TestRefusals(MeshTest):
             with self.subTest(name):
                 reason = self.refusal(mesh=path)
                 self.assertRegex(reason, re.escape(path) + '.*(' + pattern + ')')
-        self.assertEqual(1, len(self.node.get_scene().particles))
 
     def test_options(self):
         vertices, faces = bumpy(1)
@@ -295,6 +293,8 @@ class TestRefusals(MeshTest):
                 ({'colour': 'red'}, "'--colour'"),
                 ({'colour\n' + 200 * 'x': 'red'}, r"option '--colour\?x{91}\.\.\.'; see"),
                 ({'angle_weight': 'a\nlot'}, r"--angle-weight is 'a\?lot'; allowed: 0 to"),
+                ({'spread': 0}, '--spread is 0; allowed: above 0'),
+                ({'max_time': 'soon'}, "--max-time is 'soon'; allowed: above 0"),
                 ({'node': 'no\nname'}, r'\[no\?name\]'),
                 ({'node': 'nobody'}, 'no node /nobody answers; .* running:=false name:=nobody$'),
                 ({'node': '/a/b/c'}, '; start one: ROS_NAMESPACE=/a/b roslaunch .* name:=c$')):
@@ -304,5 +304,5 @@ class TestRefusals(MeshTest):
     def test_no_master(self):
         surface = self.write('surface.obj', *bumpy(1))
         environment = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
-        self.assertRegex(self.refusal(mesh=surface, environment=environment),
+        self.assertRegex(self.refusal(mesh=surface, environment=environment, node='springs'),
                          'no ROS master answers at http://localhost:1')

@@ -1,4 +1,4 @@
-"""relax_mesh as a client of the node: the scene, other clients, progress, interruption, launch."""
+"""relax_mesh as people run it: how good, how long, progress, interruption, by a node, by launch."""
 
 import os
 import pty
@@ -6,140 +6,88 @@ import resource
 import select
 import signal
 import subprocess
-import threading
 
+import actionlib
 import numpy as np
-import rospy
-from spherical_springs.msg import Status
-from spherical_springs.srv import (
-    AddParticles, AddParticlesResponse, AddSprings, GetScene, Relax, RelaxResponse)
-from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+from spherical_springs.msg import MapMeshAction, MapMeshResult
 
 from mesh_test import MeshTest
-from node_client import LONG, PACKAGE, wait_until
+from node_client import LONG, PACKAGE, NodeProcess, wait_until
 from relax_mesh import Outcome, command, relax_mesh
-from scenes import particle
+from scenes import add_knot, particle, positions
 from shapes import bumpy, mesh
 
-
-class EndlessNode:
-    """Stands for a node whose relaxation ends only when it is cancelled, and whose scene is then
-    empty. With `failing`, its relaxation ends without an answer."""
-
-    def __init__(self, name):
-        self.failing = False
-        self.persistent = []  # of each call, whether its connection is to stay after the answer
-        self.relaxing, self.cancelled = threading.Event(), threading.Event()
-
-        def noting(answer):
-            def note(request):
-                self.persistent.append(request._connection_header.get('persistent') == '1')
-                return answer(request)
-            return note
-
-        self.services = [rospy.Service(name + '/' + service, kind, noting(answer))
-                         for service, kind, answer in (
-            ('set_running', SetBool, lambda _: SetBoolResponse(success=True)),
-            ('clear', Trigger, lambda _: TriggerResponse(success=True)),
-            ('add_particles', AddParticles, lambda request: AddParticlesResponse(
-                success=True, ids=range(len(request.particles)))),
-            ('add_springs', AddSprings, lambda _: {'success': True}),
-            ('get_scene', GetScene, lambda _: {'success': True}),
-            ('relax', Relax, self.relax),
-            ('cancel', Trigger, self.cancel))]
-        self.status = rospy.Publisher(name + '/status', Status, queue_size=1, latch=True)
-        self.status.publish(state='paused', relax_progress=0.99)  # of an earlier relaxation
-
-    def relax(self, _):
-        self.relaxing.set()
-        cancelled = self.cancelled.wait(2 * LONG)
-        return None if self.failing else RelaxResponse(success=cancelled)
-
-    def cancel(self, _):
-        self.cancelled.set()
-        return TriggerResponse(success=True)
-
-    def shutdown(self):
-        self.status.unregister()
-        for service in self.services:
-            service.shutdown()
+ALONE = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}  # where there is no master
+FOR_EVER = {'spread': 1e-300, 'max_time': 1e6}
 
 
-UNRELAXED = '; the map has been written, but springs have not relaxed it'
+class RunningTest(MeshTest):
+    """Of a command that maps `surface`, to which something happens meanwhile."""
+
+    surface = bumpy(4)
+
+    def begin(self, error=subprocess.PIPE, **options):
+        process = subprocess.Popen(
+            command(mesh=self.write('surface.obj', *self.surface),
+                    output=self.path('sphere.obj'), **options),
+            env=ALONE if 'node' not in options else None,
+            stdout=subprocess.PIPE, stderr=error, text=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.said = process.stdout.readline()  # when it has read the mesh
+        return process
+
+    def outcome(self, process, already=''):
+        output, error = process.communicate(timeout=4 * LONG)
+        process.stdout, process.stderr = self.said + output, already + (error or '')
+        return Outcome(process)
+
+    def assert_best_so_far(self, outcome, error=''):
+        self.assertEqual(
+            (0, 'warning: interrupted; the best map so far has been written' + error),
+            (outcome.code, outcome.error))
+        self.assertEqual('wrote ' + self.path('sphere.obj'), outcome.output.splitlines()[-1])
+        vertices, faces = self.surface
+        self.assert_is_map(faces, mesh.areas(vertices, faces), outcome)
 
 
-class TestInterruption(MeshTest):
-    def test_relaxation_is_cancelled_and_the_map_written(self):
-        node = EndlessNode('/endless')
-        self.addCleanup(node.shutdown)
-        surface = self.write('surface.obj', *bumpy(1))
-        for which, node.failing in ((signal.SIGINT, False), (signal.SIGTERM, False),
-                                    (signal.SIGINT, True)):  # which Ctrl-C may end as well
-            node.relaxing.clear()
-            node.cancelled.clear()
-            process = subprocess.Popen(
-                command(mesh=surface, output=self.path('sphere.obj'), uv=self.path('uv.obj'),
-                        node='/endless'), stderr=subprocess.PIPE, text=True)
-            self.assertTrue(node.relaxing.wait(LONG))
-            self.assertFalse(node.cancelled.is_set())
-            process.send_signal(which)
-            error = process.communicate(timeout=LONG)[1]
-            self.assertTrue(node.cancelled.is_set())
-            if node.failing:  # of which roscpp writes a line, too
-                error = error.splitlines(True)[-1]
-            self.assertEqual((1, 'error: interrupted' + UNRELAXED + '\n'),
-                             (process.returncode, error))
-            self.assertEqual({'surface.obj', 'sphere.obj', 'uv.obj'},
-                             set(os.listdir(self.directory)))
-            os.remove(self.path('sphere.obj'))
+class TestHowGoodAndHowLong(RunningTest):
+    def test_it_stops_when_the_map_is_good_enough(self):
+        vertices, faces = bumpy(3)
+        surface = self.write('surface.obj', vertices, faces)
+        for wanted in (0.1, 0.01):
+            outcome = self.run_to_success(mesh=surface, spread=wanted, environment=ALONE)
+            spread = self.assert_is_map(faces, mesh.areas(vertices, faces), outcome).std()
+            self.assertLessEqual(spread, wanted)
+            self.assertGreater(spread, 1e-3)
+            self.assertRegex(outcome.output, r'\Abefore: .*\nafter: .*\nwrote ' +
+                             self.path('sphere.obj') + r'\n\Z')
+
+    def test_it_stops_when_time_is_over(self):
+        outcome = self.run_to_success(mesh=self.write('surface.obj', *self.surface), spread=1e-300,
+                                      max_time=1, uv=self.path('uv'), environment=ALONE)
+        self.assertIn('the time of 1 s is over (--max-time); the spread of 1e-300 (--spread) is '
+                      'not reached\n', outcome.output)
+        self.assertEqual('wrote %s, %s' % (self.path('sphere.obj'), self.path('uv')),
+                         outcome.output.splitlines()[-1])
 
 
-class TestOtherClients(MeshTest):
-    def test_who_changes_the_scene_meanwhile_is_noticed(self):
-        node = EndlessNode('/endless')
-        self.addCleanup(node.shutdown)
-        node.cancelled.set()
-        outcome = relax_mesh(mesh=self.write('surface.obj', *bumpy(1)), node='/endless',
-                             output=self.path('sphere.obj'))
-        self.assertEqual((0, 'warning: another client has changed the scene of /endless meanwhile; '
-                          'relax_mesh needs a node to itself' + UNRELAXED),
-                         (outcome.code, outcome.error))
-        self.assertEqual({'surface.obj', 'sphere.obj'}, set(os.listdir(self.directory)))
+class TestInterruption(RunningTest):
+    def test_the_best_map_so_far_is_written(self):
+        process = self.begin(**FOR_EVER)
+        already = ''
+        while 'spread' not in already:  # of a line that comes every few seconds
+            already = process.stderr.readline()
+        process.send_signal(signal.SIGTERM)
+        outcome = self.outcome(process, already)
+        self.assertRegex(outcome.progress[0], r'^mapping \.\.\. 0 % of the time, spread [.\de-]+$')
+        self.assert_best_so_far(outcome)
 
-    def test_a_relaxation_that_does_not_answer_loses_no_map(self):
-        node = EndlessNode('/endless')
-        self.addCleanup(node.shutdown)
-        node.failing = True
-        node.cancelled.set()
-        outcome = relax_mesh(mesh=self.write('surface.obj', *bumpy(1)), node='/endless',
-                             output=self.path('sphere.obj'))
-        self.assertEqual((0, 'warning: /endless/relax does not answer' + UNRELAXED),
-                         (outcome.code, outcome.error.splitlines()[-1]))
-        self.assertEqual({'surface.obj', 'sphere.obj'}, set(os.listdir(self.directory)))
-
-    def test_connections_stay_until_the_answer_is_there(self):
-        # roscpp may lose an answer after which the other side hangs up (ros_comm, issue 1976).
-        node = EndlessNode('/endless')
-        self.addCleanup(node.shutdown)
-        node.cancelled.set()
-        relax_mesh(mesh=self.write('surface.obj', *bumpy(1)), node='/endless',
-                   output=self.path('sphere.obj'))
-        self.assertGreater(len(node.persistent), 5)
-        self.assertNotIn(False, node.persistent)
-
-
-class TestProgress(MeshTest):
     def test_a_terminal_shows_how_far_it_has_come(self):
-        node = EndlessNode('/endless')
-        self.addCleanup(node.shutdown)
         terminal, its_other_end = pty.openpty()
         self.addCleanup(os.close, terminal)
-        process = subprocess.Popen(
-            command(mesh=self.write('surface.obj', *bumpy(1)), output=self.path('sphere.obj'),
-                    node='/endless'), stdout=subprocess.DEVNULL, stderr=its_other_end)
+        process = self.begin(error=its_other_end, **FOR_EVER)
         os.close(its_other_end)
-        self.assertTrue(node.relaxing.wait(LONG))
-        node.status.publish(state='relaxing', relax_progress=0.43)
         shown = ''
 
         def read_until(text):
@@ -148,13 +96,135 @@ class TestProgress(MeshTest):
                 self.assertTrue(select.select([terminal], [], [], LONG)[0], shown)
                 shown += os.read(terminal, 1000).decode()
 
-        read_until('relaxing ... 43 %')
-        self.assertNotIn('relaxing ... 99 %', shown)
-        self.assertRegex(shown, r'mapping \.\.\. \d+ %\r\x1b\[K')
+        read_until('spread')
+        self.assertRegex(shown, r'\r\x1b\[Kmapping \.\.\. 0 % of the time, spread')
         process.send_signal(signal.SIGINT)
-        read_until('not relaxed it')
-        self.assertIn('43 %\r\x1b[Kerror: interrupted', shown)
-        process.wait(LONG)
+        read_until('written\r\n')
+        self.assertRegex(shown, r'\r\x1b\[Kwarning: interrupted')
+        self.assert_best_so_far(self.outcome(process, shown.rpartition('\x1b[K')[2]))
+
+    def test_without_a_map_nothing_is_written(self):
+        self.surface = bumpy(5)
+        for which in (signal.SIGINT, signal.SIGTERM):
+            process = self.begin()
+            process.send_signal(which)
+            outcome = self.outcome(process)
+            self.assertEqual((1, 'error: interrupted; no file has been written'),
+                             (outcome.code, outcome.error))
+            self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+
+class HangingNode:
+    """Stands for a node that accepts goals, and never ends one."""
+
+    def __init__(self, name):
+        self.goals, self.cancels = [], []
+        self._server = actionlib.ActionServer(
+            name + '/map_mesh', MapMeshAction, self.accept, self.cancels.append, auto_start=False)
+        self._server.start()
+
+    def accept(self, goal):
+        goal.set_accepted()
+        self.goals.append(goal)
+
+    def is_heard(self):
+        return self._server.result_pub.get_num_connections() > 0
+
+
+class TestByNode(RunningTest):
+    surface = bumpy(3)
+
+    def test_the_map_is_that_of_this_process(self):
+        here = self.run_to_success(mesh=self.write('surface.obj', *self.surface), environment=ALONE)
+        with open(self.path('sphere.obj')) as file:
+            map_here = file.read()
+        self.node.add_particles([particle((1, 0, 0))])
+        there = self.run_to_success(mesh=self.path('surface.obj'), node=self.node.name)
+        with open(self.path('sphere.obj')) as file:
+            self.assertEqual(map_here, file.read())
+        self.assertRegex(
+            there.output, r'\Abefore: .*\n%s: mapped; spread .*\nafter: .*\nwrote .*\n\Z'
+            % self.node.name)
+        self.assertEqual(here.figures('after'), there.figures('after'))
+        self.assertEqual(1, len(self.node.get_scene().particles))
+
+    def test_all_that_is_asked_for(self):
+        vertices, faces = self.surface
+        density = 1 + (vertices[faces].mean(axis=1)[:, 2] > 0)
+        np.savetxt(self.path('density'), density)
+        outcome = self.run_to_success(
+            mesh=self.write('surface.obj', vertices, faces), density=self.path('density'),
+            sphere=self.write('start.obj', 3 * vertices, faces), spread=0.02, node=self.node.name,
+            load=True)
+        ratios = self.assert_is_map(faces, density * mesh.areas(vertices, faces), outcome)
+        self.assertTrue(1e-3 < ratios.std() <= 0.02, ratios.std())
+        sphere, _ = mesh.read_obj(self.path('sphere.obj'))
+        np.testing.assert_allclose(positions(self.node.get_scene()), sphere, atol=1e-15)
+
+    def test_interruption(self):
+        process = self.begin(node=self.node.name, **FOR_EVER)
+        already = ''
+        while 'spread' not in already:
+            already = process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        outcome = self.outcome(process, already)
+        self.assertIn(self.node.name + ': cancelled; best map so far', outcome.output)
+        self.assert_best_so_far(outcome)
+
+    def test_refusals_are_told(self):
+        with NodeProcess(running=False, max_particles=10) as node:
+            node.client()
+            outcome = relax_mesh(mesh=self.write('surface.obj', *self.surface), node=node.name,
+                                 output=self.path('sphere.obj'), load=True)
+            self.assertEqual(
+                (1, 'error: %s: load: the map needs 642 particles; allowed here, by '
+                 '~max_particles: at most 10' % node.name), (outcome.code, outcome.error))
+            self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+    def test_a_map_that_is_not_loaded_is_written(self):
+        add_knot(self.node)
+        call = self.node.begin('relax', method='dynamics', tolerance=1e-30)
+        outcome = relax_mesh(mesh=self.write('surface.obj', *self.surface), node=self.node.name,
+                             output=self.path('sphere.obj'), load=True)
+        self.node.cancel()
+        call.result(LONG)
+        self.assertEqual(2500, len(self.node.get_scene().particles))
+        self.assertEqual((0, 'warning: %s: mapped, but not loaded: a ~relax is under way; wait for '
+                          'it or end it by ~cancel' % self.node.name),
+                         (outcome.code, outcome.error))
+        vertices, faces = self.surface
+        self.assert_is_map(faces, mesh.areas(vertices, faces), outcome)
+
+    def test_a_node_that_ends(self):
+        with NodeProcess(running=False) as node:
+            node.client()
+            process = self.begin(node=node.name, **FOR_EVER)
+            while 'spread' not in process.stderr.readline():
+                pass
+            node.kill()
+            outcome = self.outcome(process)
+            self.assertEqual((1, 'error: %s has ended' % node.name), (outcome.code, outcome.error))
+            self.assertEqual(['surface.obj'], os.listdir(self.directory))
+
+    def test_a_second_signal_ends_it_at_once(self):
+        node = HangingNode('/hanging')
+        process = self.begin(node='/hanging')
+        wait_until(lambda: node.goals)
+        process.send_signal(signal.SIGINT)
+        wait_until(lambda: node.cancels)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(-signal.SIGTERM, process.wait(LONG))
+
+    def test_an_answer_that_is_no_map(self):
+        node = HangingNode('/lying')
+        process = self.begin(node='/lying')
+        goal = wait_until(lambda: node.goals)[0]
+        wait_until(node.is_heard)
+        sphere = goal.get_goal().mesh.vertices
+        goal.set_succeeded(MapMeshResult(success=True, sphere=sphere[:-1]))
+        outcome = self.outcome(process)
+        self.assertEqual((1, 'error: /lying has answered no map'), (outcome.code, outcome.error))
 
 
 class TestShortMemory(MeshTest):
@@ -205,22 +275,8 @@ class TestShortMemory(MeshTest):
         self.assert_is_map(faces, mesh.areas(vertices, faces) * densities, outcome)
 
 
-class TestNode(MeshTest):
-    def test_scene_is_replaced_and_says_so(self):
-        self.node.add_particles([particle((1, 0, 0)), particle((0, 1, 0))])
-        self.node.set_running(True)
-        vertices, faces = bumpy(1)
-        outcome = self.run_to_success(mesh=self.write('surface.obj', vertices, faces))
-        # The two lines of figures stand together, before the words of the node.
-        self.assertRegex(outcome.output, r'^before: .*\nafter: .*\n'
-                         r'(/\S+): removed 2 particles and 0 springs\n\1: .+\n$')
-        scene = self.node.get_scene()
-        self.assertEqual(len(vertices), len(scene.particles))
-        self.assertEqual(len(faces), len(scene.solid_angle_springs))
-        self.node.step(steps=0)
-        self.node.step(steps=1)  # only while paused
-
-    def test_launch_file(self):
+class TestLaunchFile(MeshTest):
+    def test_it_ends_when_the_files_are_written(self):
         self.directory = self.path("Anna's scans")
         os.mkdir(self.directory)
         vertices, faces = bumpy(2)
@@ -231,6 +287,9 @@ class TestNode(MeshTest):
              'name:=springs_of_mesh'],
             cwd=self.directory, env=environment, timeout=4 * LONG,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(0, ended.returncode, ended.stdout)
+        self.assertNotIn('REQUIRED', ended.stdout)
+        self.assertIn('wrote ./left hand_sphere.obj, uv of it.obj', ended.stdout)
         self.assertEqual({'left hand.obj', 'left hand_sphere.obj', 'uv of it.obj'},
                          set(os.listdir(self.directory)), ended.stdout)
         sphere, same_faces = mesh.read_obj(self.path('left hand_sphere.obj'))

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "spherical_springs/maps/triangle_mesh.h"
+#include "spherical_springs/range.h"
 
 namespace spherical_springs::mesh {
 
@@ -18,19 +19,28 @@ class NoMap : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// How far the search for a map has come.
+struct MapProgress {
+  double fraction;  ///< of the time, that is over; 0 to 1
+  double spread;  ///< of the best map so far, as `Distortion` has it; infinity while there is none
+};
+
+/// Allowed angle weights.
+inline constexpr core::Range kAngleWeights{0, 1e6, "0 to 1e6"};
+
 /// Choices of a map.
 struct MapOptions {
-  /// 0: areas alone; more keeps faces nearer to equal corner angles, at the expense of areas.
+  /// Within `kAngleWeights`. 0: areas alone; more keeps faces nearer to equal corner angles, at the
+  /// expense of areas, which 0.1 gets right to some percent.
   double angle_weight = 0;
   /// Wanted standard deviation of the logarithms of area over share; better ones are not sought.
   double tolerance = 1e-3;
   double max_time = 20;  ///< wall [s]; then the best map so far comes out, or the first
   int threads = 1;       ///< results do not depend on it, to the last bit, unless time runs out
-  /// Called on the thread of the caller, several times a second in every phase, with the share of
-  /// the time that is over, from 0 to 1. Returning false once ends the search with the best map so
-  /// far, or with the first where there is none yet. What it throws comes out, but for
-  /// std::bad_alloc, which is taken as a lack of memory.
-  std::function<bool(double fraction)> go_on = [](double) { return true; };
+  /// Called on the thread of the caller, several times a second in every phase. Returning false
+  /// once ends the search with the best map so far, or with the first where there is none yet. What
+  /// it throws comes out, but for std::bad_alloc, which is taken as a lack of memory.
+  std::function<bool(const MapProgress&)> go_on = [](const MapProgress&) { return true; };
   /// Called once where memory has run out in the middle of the search, and what comes out is the
   /// best map so far. Where there is none yet, std::bad_alloc comes out instead.
   std::function<void()> out_of_memory = [] {};
