@@ -8,6 +8,7 @@
 #include "geometry/tessellation.h"
 #include "layouts.h"
 #include "maps/topological_sphere.h"
+#include "spherical_springs/maps/map_scene.h"
 #include "springs/strain.h"
 
 namespace spherical_springs {
