@@ -8,7 +8,7 @@
 
 namespace spherical_springs {
 
-/// What a goal of ~map_mesh asks for.
+/// A goal of ~map_mesh, read.
 struct MeshGoal {
   mesh::TriangleMesh mesh;
   core::Values shares;                ///< of the sphere, one a face [sr]

@@ -22,7 +22,7 @@ FOR_EVER = {'spread': 1e-300, 'max_time': 1e6}
 
 
 class RunningTest(MeshTest):
-    """Of a command that maps `surface`, to which something happens meanwhile."""
+    """A command maps `surface`, and something happens to it meanwhile."""
 
     surface = bumpy(4)
 

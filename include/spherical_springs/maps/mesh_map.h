@@ -21,10 +21,10 @@ enum class MapEnd {
 
 /// A map of a mesh.
 struct MeshMap {
-  Points points;          ///< one unit vector a vertex
-  FaceDistortion faces;   ///< of these points
-  Distortion distortion;  ///< the summary of `faces`, with no face folded
-  MapEnd end = MapEnd::found;
+  Points points;               ///< one unit vector a vertex
+  FaceDistortion faces;        ///< of these points
+  Distortion distortion;       ///< the summary of `faces`, with no face folded
+  MapEnd end = MapEnd::found;  ///< why the search has ended
 };
 
 /// Maps a mesh as `sphereMap` does, from `start` if there is one, and tells how far the map is from
