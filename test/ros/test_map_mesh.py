@@ -211,10 +211,11 @@ class TestLongGoals(MapTest):
         feedback = list(self.map.feedback)
         for earlier, later in zip(feedback, feedback[1:]):
             self.assertGreater(later.wall_time, earlier.wall_time + 0.09)  # at most 10 Hz
-            self.assertTrue(earlier.spread == 0 or later.spread <= earlier.spread)
         for message in feedback:
             self.assertTrue(0 <= message.progress <= 1, message)
-        self.assertLessEqual(result.spread, 1.000001 * feedback[-1].spread)
+        first = next(message.spread for message in feedback if message.spread > 0)
+        self.assertLess(feedback[-1].spread, first)
+        self.assertLess(result.spread, 1.2 * feedback[-1].spread)
         self.assert_map(bumpy(3), result)
 
     def test_the_service_cancel_ends_it(self):

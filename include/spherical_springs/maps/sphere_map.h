@@ -22,7 +22,7 @@ class NoMap : public std::runtime_error {
 /// How far the search for a map has come.
 struct MapProgress {
   double fraction;  ///< of the time, that is over; 0 to 1
-  double spread;  ///< of the best map so far, as `Distortion` has it; infinity while there is none
+  double spread;    ///< of the map that would come out now; infinity while there is none
 };
 
 /// Allowed angle weights.
