@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include "maps/coverage.h"
 #include "maps/mapping.h"
 #include "maps/topological_sphere.h"
+#include "spherical_springs/maps/mesh_map.h"
 
 namespace spherical_springs::mesh {
 namespace {
@@ -73,6 +75,19 @@ Points directions(const TriangleMesh& mesh, const Points& start) {
   return result;
 }
 
+/// Returns the projection from the middle where that leaves nothing to be found, as it does for a
+/// sphere or a cube.
+std::optional<Points> goodProjection(const TriangleMesh& mesh, const Eigen::VectorXd& shares,
+                                     const MapOptions& options) {
+  if (options.angle_weight > 0) return std::nullopt;
+  Points projection = centralProjection(mesh);
+  if (!coversOnce(mesh.faces, projection) ||
+      spreadOf(mesh.faces, shares, projection) > options.tolerance) {
+    return std::nullopt;
+  }
+  return projection;
+}
+
 }  // namespace
 
 Values faceShares(const ValuesRef& areas) {
@@ -98,7 +113,7 @@ Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const MapOpt
   requireOptions(options);
   const Eigen::VectorXd wanted = shares;
   return Mapping(mesh.faces, wanted, static_cast<std::int32_t>(mesh.vertices.cols()), options)
-      .run({});
+      .run(goodProjection(mesh, wanted, options));
 }
 
 Points sphereMap(const TriangleMesh& mesh, const ValuesRef& shares, const Points& start,

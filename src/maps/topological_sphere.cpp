@@ -67,6 +67,7 @@ void requireClosed(const HalfEdges& edges, const MeshNames& names) {
   const std::vector<Hole> holes = holesOf(edges);
   if (holes.empty()) return;
   std::vector<Index> sizes;
+  sizes.reserve(holes.size());
   for (const Hole& hole : holes) sizes.push_back(static_cast<Index>(hole.size()));
   const Index h = holes.front().front();
   refuse("the mesh is open: it has " + counted(sizes, "hole", "edges") + "; " +

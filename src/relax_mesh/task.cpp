@@ -93,7 +93,7 @@ bool isOfSameFile(const mesh::PolygonMesh& start, const Source& source) {
 Points readStart(const fs::path& path, const Source& source) {
   const Source start(path);
   return about(path, [&] {
-    const Points all = directions(start.surface.mesh.vertices, start.names);
+    Points all = directions(start.surface.mesh.vertices, start.names);
     if (isOfSameFile(start.file, source)) {
       Points result(3, source.surface.mesh.vertices.cols());
       for (Eigen::Index v = 0; v < result.cols(); ++v) {
@@ -116,6 +116,7 @@ Task readTask(const Options& options) {
   Source source(options.mesh);
   Task task;
   task.repairs = repair(options, source);
+  about(options.mesh, [&] { requireTwoVertices(source.surface.mesh, options.placement); });
   task.inside_out = mesh::volume(source.surface.mesh) < 0;
   readShares(options, source, task);
   if (!options.sphere.empty()) task.start = readStart(options.sphere, source);

@@ -18,13 +18,9 @@ Eigen::Matrix3d shortestTurn(const Vector3& from, const Vector3& to) {
 
 /// The turn after which `pole` lies at z and `front` in the half plane of x.
 Eigen::Matrix3d turnOfBoth(const Vector3& pole, const Vector3& front) {
-  constexpr double kAlike = 1e-9;
+  constexpr double kOpposite = 1e-9;
   const Vector3 y = pole.cross(front);
-  if (y.norm() < kAlike) {
-    throw std::invalid_argument(
-        "--pole and --front choose the same vertex, or two that the map puts opposite each other; "
-        "choose other directions");
-  }
+  if (y.norm() < kOpposite) return shortestTurn(pole, Vector3::UnitZ());
   Eigen::Matrix3d turn;
   turn.row(1) = y.normalized();
   turn.row(2) = pole.normalized();
@@ -33,6 +29,14 @@ Eigen::Matrix3d turnOfBoth(const Vector3& pole, const Vector3& front) {
 }
 
 }  // namespace
+
+void requireTwoVertices(const TriangleMesh& surface, const Placement& placement) {
+  if (!placement.pole || !placement.front) return;
+  if (farthest(surface, *placement.pole) != farthest(surface, *placement.front)) return;
+  throw std::invalid_argument(
+      "--pole and --front choose the same vertex; allowed: directions in which different vertices "
+      "are the farthest");
+}
 
 Points placed(const TriangleMesh& surface, const Points& sphere, const Placement& placement) {
   if (!placement.pole && !placement.front) return sphere;

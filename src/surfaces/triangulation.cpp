@@ -65,6 +65,7 @@ class Ears {
     const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     const double sign = normal[axis] < 0 ? -1 : 1;
     std::vector<Vector2> places;
+    places.reserve(corners.size());
     for (const Vector3& corner : corners) places.push_back({corner[x], sign * corner[y]});
     return places;
   }

@@ -79,6 +79,24 @@ TEST(MeshMap, TellsTheSpreadWithAnAngleWeightToo) {
   EXPECT_NEAR(map.distortion.spread, told, 0.01 * told);
 }
 
+TEST(MeshMap, LeavesAGoodStartAsItIs) {
+  const TriangleMesh mesh = testing::bumps(2, 3);
+  const Values shares = faceShares(faceAreas(mesh));
+  const MeshMap map = meshMap(mesh, shares, {}, {});
+  ASSERT_LE(map.distortion.spread, 1e-3);
+  EXPECT_EQ(map.points, meshMap(mesh, shares, map.points, {}).points);
+}
+
+TEST(MeshMap, OfASphereIsTheSphere) {
+  const TriangleMesh mesh = testing::deformedSphere(2, [](const Vector3& p) { return p; });
+  const MeshMap map = meshMap(mesh, faceShares(faceAreas(mesh)), {}, [] {
+    MapOptions options;
+    options.tolerance = 0.1;
+    return options;
+  }());
+  EXPECT_LT((map.points - mesh.vertices).cwiseAbs().maxCoeff(), 1e-15);
+}
+
 TEST(MeshMap, GoesOnFromAStart) {
   const TriangleMesh mesh = testing::bumps(2, 2);
   const Eigen::VectorXd shares = sharesOf(mesh);

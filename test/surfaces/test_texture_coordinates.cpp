@@ -181,7 +181,18 @@ TEST(Placement, PutsTheFarthestVerticesWhereTheyAreAskedFor) {
   // A rotation, which keeps what the map is.
   EXPECT_NEAR(0, (both.transpose() * both - map.transpose() * map).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_EQ(map, placed(sphere, map, {}));
-  EXPECT_THROW(placed(sphere, map, {Vector3(0, 0, 1), Vector3(0, 0, 2)}), std::invalid_argument);
+}
+
+TEST(Placement, TakesTwoVerticesThatMayLieOppositeEachOther) {
+  const TriangleMesh sphere = mesh_scenes::icosphere(1);
+  const Vector3 up(0, 0, 1);
+  EXPECT_THROW(requireTwoVertices(sphere, {up, Vector3(0, 0, 2)}), std::invalid_argument);
+  EXPECT_NO_THROW(requireTwoVertices(sphere, {up, -up}));
+  Eigen::Index top;
+  sphere.vertices.row(2).maxCoeff(&top);
+  const Points result = placed(sphere, sphere.vertices, {up, -up});
+  EXPECT_EQ(up, result.col(top));
+  EXPECT_TRUE(result.allFinite());
 }
 
 }  // namespace
