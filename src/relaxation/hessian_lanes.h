@@ -1,8 +1,9 @@
 // The kernels of hessian_kernels.h, for whatever level of instruction set a file that includes this
-// is compiled for. The formulas are those of src/springs, for angles that are not large.
+// is compiled for. The formulas are those of src/springs, for solid angles that are not large.
 #pragma once
 
 #include "relaxation/hessian_kernels.h"
+#include "springs/spring_lanes.h"
 #include "springs/triangle_lanes.h"
 
 namespace {
@@ -62,33 +63,25 @@ inline void leaveOut(std::uint32_t begin, std::uint32_t end, std::uint32_t* left
   for (std::uint32_t s = begin; s < end; ++s) left_out[count++] = s;
 }
 
-/// Energy of the springs from `first` on, in each lane, added with the rest to `arrays`; false,
-/// with nothing added, where an angle is outside the range.
-inline bool addArcs(const SpringFields<2>& springs, std::uint32_t first,
-                    const HessianArrays& arrays, Lanes& energy) {
-  constexpr double kShortest = 1e-16, kLongest = 0.25;  // of a quarter of the squared chord
-  const LaneSprings<2> s(springs, first, arrays);
-  const Lanes3 chord = s.ends[1].point - s.ends[0].point;
-  const Lanes h = 0.25 * dot(chord, chord);  // the squared sine of half of the angle
-  if (any((h < kShortest) | (h > kLongest))) return false;
-  const Lanes half_sine = squareRoot(h);
-  const Lanes half_cosine = squareRoot(1 - h);
-  const Lanes sine = 2 * half_sine * half_cosine;
-  const Lanes r = 2 * half_sine * arcsineRatio(h) - s.rest;
+/// An arc between the ends of each spring.
+struct Arcs {
+  Lanes angle, half_sine, half_cosine;  ///< of the arc, and of half of it
+  Lanes2 ga, gb;                        ///< gradients of the angle at both ends
+};
+
+/// Adds energies, gradients and Hessians of springs whose arcs are known.
+inline void addArcs(const SpringFields<2>& springs, std::uint32_t first, const LaneSprings<2>& s,
+                    const Arcs& arcs, const HessianArrays& arrays, Lanes& energy) {
+  const Lanes r = arcs.angle - s.rest;
   const Lanes kr = s.stiffness * r;
   energy += 0.5 * kr * r;
-
-  // A tangent vector has the same coordinates at b as its difference from a, and they do not
-  // cancel.
-  const Lanes over_sine = 1 / sine;
-  const Lanes2 ga = -over_sine * s.ends[0].coordinates(chord);
-  const Lanes2 gb = over_sine * s.ends[1].coordinates(chord);
+  const Lanes2 &ga = arcs.ga, &gb = arcs.gb;
   addGradient(s.rows, 0, kr * ga, arrays);
   addGradient(s.rows, 1, kr * gb, arrays);
 
   // Both ends moving to the same side, and to opposite sides, across the arc.
-  Lanes same = -kr * half_sine / half_cosine;
-  Lanes opposite = kr * half_cosine / half_sine;
+  Lanes same = -kr * arcs.half_sine / arcs.half_cosine;
+  Lanes opposite = kr * arcs.half_cosine / arcs.half_sine;
   const Lanes least = arrays.least_curvature * s.stiffness;
   same = same < least ? Lanes{} : same;
   opposite = opposite < least ? Lanes{} : opposite;
@@ -97,6 +90,40 @@ inline bool addArcs(const SpringFields<2>& springs, std::uint32_t first,
   addBlock(springs, first, 0, 0, outer(s.stiffness * ga, ga) + outer(near * ma, ma), arrays);
   addBlock(springs, first, 1, 1, outer(s.stiffness * gb, gb) + outer(near * mb, mb), arrays);
   addBlock(springs, first, 0, 1, outer(s.stiffness * ga, gb) + outer(across * ma, mb), arrays);
+}
+
+/// Returns the arcs of springs whose ends are neither close nor nearly antipodal.
+inline Arcs wideArcs(const LaneSprings<2>& s, const AngleLanes& angle) {
+  const Lanes over_sine = 1 / angle.sine;
+  const Lanes2 ga = -over_sine * s.ends[0].coordinates(angle.beside);
+  const Lanes turned = select(angle.is_far, -over_sine, over_sine);
+  return {angle.angle, squareRoot(angle.near), squareRoot(angle.far), ga,
+          turned * s.ends[1].coordinates(angle.beside)};
+}
+
+/// Energy of the springs from `first` on, in each lane, added with the rest to `arrays`; false,
+/// with nothing added, where ends are too close or too near to antipodal.
+inline bool addAnyArcs(const SpringFields<2>& springs, std::uint32_t first,
+                       const HessianArrays& arrays, Lanes& energy) {
+  constexpr double kLongest = 0.25, kFarthest = 1 - 1e-12;  // of a quarter of the squared chord
+  const LaneSprings<2> s(springs, first, arrays);
+  const Lanes3 chord = s.ends[1].point - s.ends[0].point;
+  const Lanes h = 0.25 * dot(chord, chord);  // the squared sine of half of the angle
+  if (any((h < kShortest) | (h > kFarthest))) return false;
+  if (any(h > kLongest)) {
+    const AngleLanes angle(s.ends[0].point, s.ends[1].point);
+    addArcs(springs, first, s, wideArcs(s, angle), arrays, energy);
+    return true;
+  }
+  const Lanes half_sine = squareRoot(h);
+  const Lanes half_cosine = squareRoot(1 - h);
+  // A tangent vector has the same coordinates at b as its difference from a, and they do not
+  // cancel.
+  const Lanes over_sine = 1 / (2 * half_sine * half_cosine);
+  const Lanes2 ga = -over_sine * s.ends[0].coordinates(chord);
+  const Lanes2 gb = over_sine * s.ends[1].coordinates(chord);
+  const Lanes angle = 2 * half_sine * arcsineRatio(h);
+  addArcs(springs, first, s, {angle, half_sine, half_cosine, ga, gb}, arrays, energy);
   return true;
 }
 
@@ -174,6 +201,6 @@ double addAll(const SpringFields<N>& springs, std::uint32_t begin, std::uint32_t
 namespace spherical_springs::core {
 
 /// This file's own.
-static constexpr HessianKernels kKernels = {addAll<2, addArcs>, addAll<3, addTriangles>};
+static constexpr HessianKernels kKernels = {addAll<2, addAnyArcs>, addAll<3, addTriangles>};
 
 }  // namespace spherical_springs::core
