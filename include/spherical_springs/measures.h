@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/state.h"
@@ -22,6 +23,20 @@ struct Energies {
 
 /// Sums the energies of all springs and particles.
 Energies energies(const Plan& plan, const State& state);
+
+/// Conditions and energies of the springs of one kind, in the order of their ids.
+template <class Spring>
+struct StrainsOf {
+  std::vector<double> conditions;  ///< C of each spring [rad or sr]
+  std::vector<double> energies;    ///< stiffness C^2 / 2 [J]
+};
+
+/// Conditions and energies of the springs of each kind.
+using Strains = PerKind<StrainsOf>;
+
+/// Returns the condition and the energy of every spring; `positions`: one unit vector a particle.
+/// \snippet test_headers.cpp strains
+Strains strains(const System& system, const Points& positions);
 
 /// Conserved quantities when the account began, and their change since. For many threads.
 class Account {

@@ -15,10 +15,12 @@ namespace spherical_springs::core {
 enum class RelaxationMethod {
   newton,    ///< Newton's method on the sphere
   dynamics,  ///< damped stepping as in the report, with a step chosen by itself
-  fire       ///< the fast inertial relaxation engine, a quicker way of that
+  fire,      ///< the fast inertial relaxation engine, a quicker way of that
+  global     ///< the lowest of several minima, by Newton's method and sweeps over the springs
 };
 
-/// Returns the method of a name: "newton", "dynamics", "fire", or empty for the default, newton.
+/// Returns the method of a name: "newton", "dynamics", "fire", "global", or empty for the default,
+/// newton.
 /// @throw std::invalid_argument for any other name.
 RelaxationMethod relaxationMethod(const std::string& name);
 
@@ -31,6 +33,17 @@ struct RelaxationResult {
   double energy_after = 0;       ///< potential [J]
   double max_torque = 0;         ///< on a free particle [N m]
   std::string message;           ///< why it ended
+
+  /// By how many rotations particles that springs join come to other places without a change of the
+  /// energy: for each group of free particles 3 if none is joined to a pinned one (2 where all lie
+  /// on one axis), 1 if those all lie on one axis (0 where the group lies on it too), else 0.
+  std::uint32_t free_rotations = 0;
+  /// Whether the mirror image of a group of joined free particles has the same energy, and is not
+  /// the group itself, turned, as where all lie on one great circle.
+  bool mirror_ambiguous = false;
+  /// The root of the mean square of all conditions, each weighted by its stiffness: the root of
+  /// twice the energy over the stiffness of all springs in sum [rad, sr].
+  double rms_strain = 0;
 };
 
 /// How far a relaxation has come.
@@ -42,12 +55,15 @@ struct RelaxationProgress {
 /// Choices of a relaxation.
 struct RelaxationOptions {
   RelaxationMethod method = RelaxationMethod::newton;  ///< how it descends
-  /// Largest torque left on a free particle [N m]. 0: on each particle 1e-9 of the stiffness that it
-  /// feels, which is half the trace of its block of the definite Hessian and counts as at most 1e5
-  /// times the sum of its springs' stiffness; at least 1e-15 of the root of stiffness times sum,
-  /// which bounds what rounding leaves.
+  /// Largest torque left on a free particle [N m]. 0: on each particle 1e-9 of the stiffness that
+  /// it feels, which is half the trace of its block of the definite Hessian and counts as at most
+  /// 1e5 times the sum of its springs' stiffness; at least 1e-15 of the root of stiffness times
+  /// sum, which bounds what rounding leaves.
   double tolerance = 0;
   double max_time = 0;  ///< wall [s]; 0: no limit
+  /// For `global`: how often sweeps begin, at first at the present positions, then at random ones.
+  std::uint32_t starts = 1;
+  std::uint32_t seed = 0;  ///< for `global`: of all that is random
   /// Whether steps are cut before a triangle of a solid-angle spring would fold: one that is
   /// oriented as its rest angle asks, or that asks for none.
   bool keep_orientation = false;
@@ -55,7 +71,8 @@ struct RelaxationOptions {
   std::function<bool(const RelaxationProgress&)> go_on = [](const auto&) { return true; };
 };
 
-/// @throw std::invalid_argument for a tolerance or time that is negative or not a number.
+/// @throw std::invalid_argument for a tolerance or time that is negative or not a number, and for
+/// `global` without a start or with `keep_orientation`.
 void requireValid(const RelaxationOptions& options);
 
 /// The result of a relaxation that has not moved anything: energy and torque at `positions`, no

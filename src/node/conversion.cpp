@@ -1,5 +1,6 @@
 #include "node/conversion.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace spherical_springs {
@@ -78,6 +79,12 @@ geometry_msgs::Pose toPose(const core::Vector3& p, double radius) {
   turn.x = across > 0 ? -sine * p.y() / across : sine;
   turn.y = across > 0 ? sine * p.x() / across : 0;
   return pose;
+}
+
+core::TangentFrame axesOfPose(const core::Vector3& position) {
+  const auto turn = toPose(position, 1).orientation;
+  const Eigen::Matrix3d axes = Eigen::Quaterniond(turn.w, turn.x, turn.y, turn.z).matrix();
+  return axes.leftCols<2>();
 }
 
 }  // namespace spherical_springs

@@ -61,6 +61,9 @@ Energies energiesOf(const core::Runner::Snapshot& snapshot, const std::string& f
 /// shortest turn from the frame's own z.
 geometry_msgs::Pose toPose(const core::Vector3& position, double radius);
 
+/// The x and y axes of the pose of a particle, in the scene's.
+core::TangentFrame axesOfPose(const core::Vector3& position);
+
 template <class Message>
 auto fromMessages(const std::vector<Message>& messages) {
   std::vector<decltype(fromMessage(messages.front()))> items;

@@ -1,5 +1,6 @@
 #include "node/handlers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -118,22 +119,6 @@ void Handlers::removeSprings(const RemoveSprings::Request& request, Answer<Remov
   answer.response.message = "removed " + counted(springIdCount(request), "spring");
   answer.reserve();
   runner_.change([&](core::Simulation& s) { s.removeSprings(ids); });
-}
-
-void Handlers::getScene(const GetScene::Request&, Answer<GetScene>& answer) {
-  auto& response = answer.response;
-  const core::SceneFile present = runner_.present();
-  response.time = present.time;
-  const auto fill = [](const auto& table, auto& ids, auto& messages) {
-    ids = table.ids();
-    messages.reserve(table.size());
-    for (const auto& item : table.items()) messages.push_back(toMessage(item));
-  };
-  fill(present.scene.particles(), response.particle_ids, response.particles);
-  forEachKindInMessages([&](auto kind) {
-    fill(present.scene.springs<typename decltype(kind)::Spring>(), kind.ids(response),
-         kind.springs(response));
-  });
 }
 
 void Handlers::loadScene(const LoadScene::Request& request, Answer<LoadScene>& answer) {
@@ -259,6 +244,12 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
   options.tolerance = request.tolerance;
   options.max_time = request.max_time;
   options.keep_orientation = request.keep_orientation;
+  options.starts = std::max(request.starts, 1u);
+  options.seed = request.seed;
+  if (request.starts > 0 && options.method != core::RelaxationMethod::global) {
+    throw std::invalid_argument("starts is " + std::to_string(request.starts) +
+                                "; allowed: 0, as only the method global starts several times");
+  }
   answer.reserve(kMessageRoom);
   news_.statusChanged();
   const auto result = runner_.relax(options, follower);
@@ -269,6 +260,9 @@ void Handlers::relax(const Relax::Request& request, Answer<Relax>& answer,
   response.energy_before = result.energy_before;
   response.energy_after = result.energy_after;
   response.max_torque = result.max_torque;
+  response.free_rotations = result.free_rotations;
+  response.mirror_ambiguous = result.mirror_ambiguous;
+  response.rms_strain = result.rms_strain;
   response.message.assign(result.message, 0, kMessageRoom);
   news_.relaxed(result.converged ? std::string_view() : response.message);
   news_.tell(response.message, "relax: ");

@@ -3,7 +3,9 @@
 
 #include <spherical_springs/AddParticles.h>
 #include <spherical_springs/AddSprings.h>
+#include <spherical_springs/GetCovariance.h>
 #include <spherical_springs/GetScene.h>
+#include <spherical_springs/GetStrains.h>
 #include <spherical_springs/LoadScene.h>
 #include <spherical_springs/Relax.h>
 #include <spherical_springs/RemoveParticles.h>
@@ -48,6 +50,8 @@ class Handlers {
   void setSprings(const SetSprings::Request& request, Answer<SetSprings>& answer);
   void removeSprings(const RemoveSprings::Request& request, Answer<RemoveSprings>& answer);
   void getScene(const GetScene::Request& request, Answer<GetScene>& answer);
+  void getStrains(const GetStrains::Request& request, Answer<GetStrains>& answer);
+  void getCovariance(const GetCovariance::Request& request, Answer<GetCovariance>& answer);
   void loadScene(const LoadScene::Request& request, Answer<LoadScene>& answer);
   void saveScene(const SaveScene::Request& request, Answer<SaveScene>& answer);
   void clear(const std_srvs::Trigger::Request& request, Answer<std_srvs::Trigger>& answer);

@@ -15,7 +15,8 @@ namespace spherical_springs {
 
 /// A kind of spring in messages. `Message` has the fields of the core's `Spring` under the same
 /// names. Each function returns the field of that kind: `springs` and `ids` that of a request or a
-/// response, `count` that of a Status, `energy` that of an Energies.
+/// response, `count` that of a Status, `energy` that of an Energies, `conditions` and `energies`
+/// those of the answer of ~get_strains.
 template <class Spring>
 struct KindInMessages;
 
@@ -37,6 +38,14 @@ struct KindInMessages<core::AngleSpring> {
     return status.angle_springs;
   }
   static double& energy(Energies& energies) { return energies.angle; }
+  template <class Strains>
+  static auto& conditions(Strains& strains) {
+    return strains.angle_conditions;
+  }
+  template <class Strains>
+  static auto& energies(Strains& strains) {
+    return strains.angle_energies;
+  }
 };
 
 template <>
@@ -57,6 +66,14 @@ struct KindInMessages<core::SolidAngleSpring> {
     return status.solid_angle_springs;
   }
   static double& energy(Energies& energies) { return energies.solid_angle; }
+  template <class Strains>
+  static auto& conditions(Strains& strains) {
+    return strains.solid_angle_conditions;
+  }
+  template <class Strains>
+  static auto& energies(Strains& strains) {
+    return strains.solid_angle_energies;
+  }
 };
 
 template <>
@@ -77,6 +94,14 @@ struct KindInMessages<core::OrientedAngleSpring> {
     return status.oriented_angle_springs;
   }
   static double& energy(Energies& energies) { return energies.oriented_angle; }
+  template <class Strains>
+  static auto& conditions(Strains& strains) {
+    return strains.oriented_angle_conditions;
+  }
+  template <class Strains>
+  static auto& energies(Strains& strains) {
+    return strains.oriented_angle_energies;
+  }
 };
 
 /// Calls `visit(KindInMessages<Spring>())` for each kind of spring, always in the same order.

@@ -37,6 +37,8 @@ Services::Services(ros::NodeHandle node, ros::NodeHandle cancelling, ros::NodeHa
   advertise<SetSprings>(node, "set_springs", &Handlers::setSprings);
   advertise<RemoveSprings>(node, "remove_springs", &Handlers::removeSprings);
   advertiseReader<GetScene>(node, "get_scene", &Handlers::getScene);
+  advertiseReader<GetStrains>(node, "get_strains", &Handlers::getStrains);
+  advertiseReader<GetCovariance>(node, "get_covariance", &Handlers::getCovariance);
   advertise<LoadScene>(node, "load_scene", &Handlers::loadScene);
   advertiseReader<SaveScene>(node, "save_scene", &Handlers::saveScene);
   advertise<std_srvs::Trigger>(node, "clear", &Handlers::clear);

@@ -17,6 +17,7 @@ std::unique_ptr<Descent> dynamicsOf(RelaxationMethod method, const System& syste
                                     OrientationGuard* guard, const TorqueLimit& limit) {
   switch (method) {
     case RelaxationMethod::newton:
+    case RelaxationMethod::global:
       return nullptr;
     case RelaxationMethod::dynamics:
       return std::make_unique<DampedDynamics>(system, guard, limit);

@@ -4,8 +4,11 @@
 #include <memory>
 #include <stdexcept>
 
+#include "relaxation/freedom.h"
+#include "relaxation/global_search.h"
 #include "relaxation/minimum_search.h"
 #include "relaxation/newton.h"
+#include "relaxation/torque_limit.h"
 #include "spherical_springs/range.h"
 
 namespace spherical_springs::core {
@@ -14,8 +17,9 @@ RelaxationMethod relaxationMethod(const std::string& name) {
   if (name.empty() || name == "newton") return RelaxationMethod::newton;
   if (name == "dynamics") return RelaxationMethod::dynamics;
   if (name == "fire") return RelaxationMethod::fire;
+  if (name == "global") return RelaxationMethod::global;
   throw std::invalid_argument("method is " + quoted(name) +
-                              "; allowed: newton (the default), dynamics, fire");
+                              "; allowed: newton (the default), dynamics, fire, global");
 }
 
 void requireValid(const RelaxationOptions& options) {
@@ -23,18 +27,20 @@ void requireValid(const RelaxationOptions& options) {
       Range{0, kLargest, "0 (1e-9 of the stiffness that each particle feels) to 1e30 [N m]"},
       options.tolerance, "tolerance");
   requireInside(Range{0, kLargest, "0 (no limit) to 1e30 [s]"}, options.max_time, "max_time");
+  if (options.method != RelaxationMethod::global) return;
+  if (options.starts == 0) throw std::invalid_argument("starts is 0; allowed: 1 and more");
+  if (options.keep_orientation) {
+    throw std::invalid_argument(
+        "keep_orientation is true; allowed: false with the method global, which jumps from place "
+        "to place");
+  }
 }
 
 RelaxationResult unrelaxed(const System& system, const Points& positions) {
   RelaxationResult result;
   result.positions = positions;
   result.energy_before = result.energy_after = system.potential(positions).total();
-  System::Workspace workspace;
-  system.evaluate(positions, workspace);
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    if (system.pinned(i)) continue;
-    result.max_torque = std::max(result.max_torque, workspace.torques.col(i).norm());
-  }
+  result.max_torque = largestTorque(system, positions);
   return result;
 }
 
@@ -49,6 +55,12 @@ void Relaxer::forget() {
 RelaxationResult Relaxer::relax(const System& system, const Points& positions,
                                 const RelaxationOptions& options) {
   requireValid(options);
+  if (options.method == RelaxationMethod::global) {
+    forget();
+    RelaxationResult result = GlobalSearch(system, positions, options).run();
+    judge(system, result);
+    return result;
+  }
   // Only from the very place where the last one ended, so that results do not depend on what was
   // relaxed before from elsewhere.
   const bool goes_on = newton_ && newton_->fits(system) && positions == last_end_;
@@ -64,6 +76,7 @@ RelaxationResult Relaxer::relax(const System& system, const Points& positions,
     last_end_ = Points(result.positions);
     newton_ = std::move(newton);
   }
+  judge(system, result);
   return result;
 }
 

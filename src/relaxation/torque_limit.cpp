@@ -1,5 +1,6 @@
 #include "relaxation/torque_limit.h"
 
+#include <algorithm>
 #include <array>
 
 #include "spherical_springs/range.h"
@@ -14,6 +15,16 @@ TorqueLimit::TorqueLimit(const System& system, double bound) : bound_(bound) {
       for (const std::uint32_t i : spring.particles) own_stiffness_[i] += spring.stiffness;
     }
   });
+}
+
+double largestTorque(const System& system, const Points& positions) {
+  System::Workspace workspace;
+  system.evaluate(positions, workspace);
+  double largest = 0;
+  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
+    if (!system.pinned(i)) largest = std::max(largest, workspace.torques.col(i).norm());
+  }
+  return largest;
 }
 
 Eigen::VectorXd feltStiffness(const System& system, const Points& positions) {

@@ -46,6 +46,9 @@ class TorqueLimit {
 /// the definite Hessian, 0 where no spring acts on it.
 Eigen::VectorXd feltStiffness(const System& system, const Points& positions);
 
+/// The largest torque of the springs on a free particle at `positions` [N m].
+double largestTorque(const System& system, const Points& positions);
+
 /// The torque that `limit` allows on each particle at `positions` [N m].
 Eigen::VectorXd allowedTorques(const System& system, const Points& positions,
                                const TorqueLimit& limit);

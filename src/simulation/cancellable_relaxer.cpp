@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "relaxation/freedom.h"
 #include "relaxation/torque_limit.h"
 #include "relaxation/turn_back.h"
 #include "spherical_springs/range.h"
@@ -86,6 +87,7 @@ struct CancellableRelaxer::Work {
     RelaxationResult answer = reached ? *reached : unrelaxed(*system, start);
     const TorqueLimit limit(*system, options.tolerance);
     turnBack(*system, start, areWithin(*system, start, limit), answer);
+    judge(*system, answer);
     answer.message = "cancelled; largest torque " + toText(answer.max_torque) + " N m";
     return answer;
   }

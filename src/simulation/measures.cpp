@@ -59,6 +59,23 @@ double Account::angularMomentumError(const System& system, const State& state) {
   return largest_momentum_ > 0 ? change.norm() / largest_momentum_ : 0;
 }
 
+Strains strains(const System& system, const Points& positions) {
+  Strains strains;
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& springs = system.springs<Spring>();
+    auto& [conditions, energies] = strains.get<Spring>();
+    conditions.resize(springs.size());
+    energies.resize(springs.size());
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      const double c = condition(springs[s], System::points(springs[s], positions)).value;
+      conditions[s] = c;
+      energies[s] = 0.5 * springs[s].stiffness * c * c;
+    }
+  });
+  return strains;
+}
+
 double maxTorque(const Plan& plan, const State& state) {
   return Evaluation(plan, state.positions).maxTorque();
 }

@@ -4,30 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "base/disjoint_sets.h"
 #include "base/parallel.h"
+#include "system/groups.h"
 
 namespace spherical_springs::core {
 namespace {
-
-/// The number of each particle's group: those that springs join, directly or by others.
-std::vector<std::uint32_t> groupsOf(const System& system) {
-  DisjointSets sets(system.particleCount());
-  forEachKind([&](auto kind) {
-    for (const auto& spring : system.springs<typename decltype(kind)::type>()) {
-      for (const std::uint32_t particle : spring.particles) {
-        sets.join(spring.particles[0], particle);
-      }
-    }
-  });
-  std::vector<std::uint32_t> number(system.particleCount());
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < number.size(); ++i) {
-    if (sets.rootOf(i) == i) number[i] = count++;
-  }
-  for (std::uint32_t i = 0; i < number.size(); ++i) number[i] = number[sets.rootOf(i)];
-  return number;
-}
 
 struct Group {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // sum of after before^T
@@ -96,7 +77,7 @@ std::vector<Group> groupsAt(const System& system, const std::vector<std::uint32_
 Points aligned(const System& system, const Points& before, Points after,
                const std::vector<bool>& calm) {
   constexpr double kStill = 1e-6;  // [rad]
-  const auto group_of = groupsOf(system);
+  const auto group_of = groupsOf(system, Pins::join);
   std::vector<Group> groups = groupsAt(system, group_of, before, after, calm);
   for (Group& group : groups) group.findTurn();
   parallelFor(after.cols(), system.threads(), [&](std::ptrdiff_t i) {

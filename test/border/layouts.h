@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "simulation/runner.h"
+#include "spherical_springs/covariance.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/mesh_map.h"
 
@@ -24,6 +25,7 @@ constexpr TypeLayout kLayouts[] = {
     layoutOf<core::Vector2>("Vector2"),
     layoutOf<core::Vector3>("Vector3"),
     layoutOf<core::Matrix2>("Matrix2"),
+    layoutOf<core::Matrix3>("Matrix3"),
     layoutOf<core::TangentFrame>("TangentFrame"),
     layoutOf<core::Points>("Points"),
     layoutOf<core::Values>("Values"),

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "spherical_springs/covariance.h"
 #include "spherical_springs/integrator.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/map_scene.h"
@@ -229,6 +230,33 @@ TEST(Example, OfARelaxation) {
   //! [relaxation]
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(arc(result.positions.col(0), result.positions.col(1)).angle, 1, 1e-8);
+}
+
+TEST(Example, OfTheCovariance) {
+  const Scene scene = pair();
+  const System system(scene, System::Options());
+  const Points start = stateOf(scene).positions;
+  //! [covariance]
+  RelaxationOptions options;
+  options.method = RelaxationMethod::global;
+  options.starts = 5;
+  const RelaxationResult result = relax(system, start, options);
+  const std::vector<Matrix3> covariance = covariances(system, result.positions, {0, 1});
+  const double sigma = std::sqrt(covariance[0].trace());  // if it is along one direction
+  //! [covariance]
+  EXPECT_NEAR(sigma, 0.5, 1e-6);
+}
+
+TEST(Example, OfStrains) {
+  const Scene scene = pair();
+  const System system(scene, System::Options());
+  const Points positions = stateOf(scene).positions;
+  //! [strains]
+  const Strains of_all = strains(system, positions);
+  const auto& [conditions, energies] = of_all.get<AngleSpring>();
+  //! [strains]
+  EXPECT_DOUBLE_EQ(conditions.at(0), kPi / 2 - 1);
+  EXPECT_DOUBLE_EQ(energies.at(0), 0.5 * conditions[0] * conditions[0]);
 }
 
 TEST(Example, OfAMap) {

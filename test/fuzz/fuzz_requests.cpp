@@ -105,7 +105,8 @@ class Requests {
 
   void relaxShortly() {
     RelaxationOptions options;
-    options.method = relaxationMethod(data_.PickValueInArray({"newton", "dynamics", "fire"}));
+    options.method =
+        relaxationMethod(data_.PickValueInArray({"newton", "dynamics", "fire", "global"}));
     options.tolerance = data_.ConsumeBool() ? 0 : number();
     int iterations = data_.ConsumeIntegralInRange(1, 8);
     options.go_on = [&](const RelaxationProgress& progress) {

@@ -15,8 +15,8 @@ import rosgraph
 import roslib.packages
 import rospy
 from spherical_springs.srv import (
-    AddParticles, AddSprings, GetScene, LoadScene, Relax, RemoveParticles, RemoveSprings,
-    SaveScene, SetParticles, SetSprings, Step)
+    AddParticles, AddSprings, GetCovariance, GetScene, GetStrains, LoadScene, Relax,
+    RemoveParticles, RemoveSprings, SaveScene, SetParticles, SetSprings, Step)
 from std_srvs.srv import SetBool, Trigger
 
 PACKAGE = 'spherical_springs'
@@ -28,6 +28,8 @@ SERVICES = {
     'set_springs': SetSprings,
     'remove_springs': RemoveSprings,
     'get_scene': GetScene,
+    'get_strains': GetStrains,
+    'get_covariance': GetCovariance,
     'load_scene': LoadScene,
     'save_scene': SaveScene,
     'clear': Trigger,

@@ -37,6 +37,23 @@ class TestExamples(unittest.TestCase):
         self.assertGreater(min(map(angle, before[1:6], after[1:6])), 0.01)
 
 
+class TestCalibration(unittest.TestCase):
+    """calibrate_rig.py, the script of a recipe."""
+
+    def test_the_wrong_measurement_stands_out(self):
+        with NodeProcess(name='/' + PACKAGE, environment={'ROS_NAMESPACE': '/rig'}):
+            NodeClient('/rig/' + PACKAGE)
+            lines = subprocess.check_output(
+                ['rosrun', PACKAGE, 'calibrate_rig.py'], timeout=LONG, text=True,
+                env={**os.environ, 'ROS_NAMESPACE': '/rig'}).splitlines()
+        self.assertIn('converged; ', lines[0])
+        self.assertIn('free rotations: 1; mirror image as good: yes', lines[1])
+        self.assertEqual('0:  1.000000  0.000000  0.000000  0.00 0.00', lines[3])
+        misses = {line[:3]: abs(float(line[4:])) for line in lines[-15:]}
+        self.assertEqual('1 4', max(misses, key=misses.get), lines)
+        self.assertGreater(misses['1 4'], 4)
+
+
 class TestClient(unittest.TestCase):
     """spread_directions.py, which talks to the node of its namespace."""
 
