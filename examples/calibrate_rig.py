@@ -19,9 +19,9 @@ PATIENCE = 10  # [s] for the node to be there
 SIGMA = math.radians(0.2)  # of a measurement
 # The drawing: azimuth and elevation of each camera [degrees].
 DRAWING = ((0, 0), (60, 0), (120, 0), (180, 0), (240, 0), (300, 45))
-# Measured angles [degrees] between cameras 0 and 1, 0 and 2, ... 4 and 5. Cameras 1 and 4 are
+# Measured angles [degrees] between cameras 0 and 1, 0 and 2, ... 4 and 5. Cameras 1 and 3 are
 # 3 degrees less apart.
-ANGLES = (61.62, 122.02, 172.88, 120.18, 63.96, 68.88, 124.40, 161.27, 119.16, 61.00, 117.04,
+ANGLES = (61.62, 122.02, 172.88, 120.18, 63.96, 68.88, 127.40, 158.27, 119.16, 61.00, 117.04,
           124.87, 55.89, 108.70, 76.05)
 
 
