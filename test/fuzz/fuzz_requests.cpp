@@ -98,7 +98,7 @@ class Requests {
 
   StepWish anySteps() {
     StepWish wish = fixedSteps();
-    wish.accuracy = data_.PickValueInArray({0., 1e-9, 1e-4, 1.});
+    wish.accuracy = data_.PickValueInArray({0., 1e-3, 1.});
     wish.chooses_method = data_.ConsumeBool();
     return wish;
   }
