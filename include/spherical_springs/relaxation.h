@@ -34,9 +34,9 @@ struct RelaxationResult {
   double max_torque = 0;         ///< on a free particle [N m]
   std::string message;           ///< why it ended
 
-  /// By how many rotations particles that springs join come to other places without a change of the
-  /// energy: for each group of free particles 3 if none is joined to a pinned one (2 where all lie
-  /// on one axis), 1 if those all lie on one axis (0 where the group lies on it too), else 0.
+  /// The number of rotations that take particles to other places without a change of the energy:
+  /// for each group of free particles 3 if none is joined to a pinned one (2 where all lie on one
+  /// axis), 1 if those all lie on one axis (0 where the group lies on it too), else 0.
   std::uint32_t free_rotations = 0;
   /// Whether the mirror image of a group of joined free particles has the same energy, and is not
   /// the group itself, turned, as where all lie on one great circle.

@@ -107,6 +107,7 @@ bool Mapping::tookAsItIs(Points& start) {
   if (options_.angle_weight > 0 || spread > options_.tolerance) return false;
   best_ = {std::move(start), spread};
   tellOfMap(spread);
+  clock_.goOn();
   return true;
 }
 

@@ -13,9 +13,7 @@ enum class MeshFault { open, several_pieces, unused_vertex, repeated_vertex };
 struct MeshNames {
   virtual ~MeshNames() = default;
 
-  virtual std::string vertex(std::int32_t index) const {
-    return "vertex " + std::to_string(index);
-  }
+  virtual std::string vertex(std::int32_t index) const { return "vertex " + std::to_string(index); }
   virtual std::string face(std::int32_t index) const { return "face " + std::to_string(index); }
   virtual std::string edge(std::int32_t from, std::int32_t to) const {
     return "edge " + std::to_string(from) + "-" + std::to_string(to);

@@ -62,10 +62,8 @@ void Handlers::getStrains(const GetStrains::Request&, Answer<GetStrains>& answer
   });
 }
 
-void Handlers::getCovariance(const GetCovariance::Request& request,
-                             Answer<GetCovariance>& answer) {
-  const auto options =
-      runner_.read([](core::Simulation& s) { return s.settings().system; });
+void Handlers::getCovariance(const GetCovariance::Request& request, Answer<GetCovariance>& answer) {
+  const auto options = runner_.read([](core::Simulation& s) { return s.settings().system; });
   const core::Scene scene = runner_.present().scene;
   const auto indices = indicesOf(scene.particles(), request.ids);
   const core::System system(scene, options);

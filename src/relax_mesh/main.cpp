@@ -22,7 +22,6 @@
 namespace spherical_springs::relax_mesh {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kNoMemory = "there is not enough memory";

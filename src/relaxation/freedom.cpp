@@ -19,7 +19,7 @@ double totalStiffness(const System& system) {
 
 }  // namespace
 
-// What a tolerance of 1e-9 rad leaves of strains counts as nothing.
+// Strains that a tolerance of 1e-9 rad leaves count as nothing.
 Eigen::VectorXd roundingOf(const Eigen::VectorXd& energies, const Eigen::VectorXd& stiffness) {
   constexpr double kShare = 1e-9, kStrain = 1e-8;  // [rad]
   return kShare * energies + kStrain * kStrain * stiffness;

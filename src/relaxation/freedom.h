@@ -1,4 +1,4 @@
-// What the springs of a relaxed scene leave open, and how far they are from rest.
+// The freedom that the springs of a relaxed scene leave, and their distance from rest.
 #pragma once
 
 #include <Eigen/Core>

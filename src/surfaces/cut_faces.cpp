@@ -26,8 +26,8 @@ double CutFaces::crossing(Index from, Index to, int across, int axis) const {
 /// chord of the map, so that neighbours agree.
 CutFaces::Index CutFaces::crossingPoint(Index from, Index to, int axis) {
   const auto ends = std::minmax(from, to);
-  const auto place = crossings_.try_emplace({ends.first, ends.second, axis},
-                                            static_cast<Index>(on_map_.size()));
+  const auto place =
+      crossings_.try_emplace({ends.first, ends.second, axis}, static_cast<Index>(on_map_.size()));
   if (!place.second) return place.first->second;
   const Vector3 &p = on_map_[ends.first], &q = on_map_[ends.second];
   const double share = p[axis] / (p[axis] - q[axis]);

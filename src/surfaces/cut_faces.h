@@ -38,7 +38,7 @@ class CutFaces {
  private:
   Index crossingPoint(Index from, Index to, int axis);
 
-  std::vector<Vector3> on_map_, on_surface_;  // both in the planes of the faces
+  std::vector<Vector3> on_map_, on_surface_;                  // both in the planes of the faces
   std::map<std::tuple<Index, Index, int>, Index> crossings_;  // by ends, in order, and axis
 };
 

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "maps/topological_sphere.h"
-#include "surfaces/obj_file.h"
-#include "surfaces/surface.h"
 #include "soundness.h"
 #include "spherical_springs/maps/distortion.h"
 #include "spherical_springs/maps/sphere_map.h"
+#include "surfaces/obj_file.h"
+#include "surfaces/surface.h"
 
 using namespace spherical_springs;  // NOLINT: a program, not a header
 using core::fuzzing::require;

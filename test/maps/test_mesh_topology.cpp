@@ -86,7 +86,8 @@ TEST(MeshTopology, EdgesOfThreeFacesAreRefused) {
 }
 
 TEST(MeshTopology, TwoPiecesAreRefused) {
-  expectRefusal(twoOf(sphere()), "the mesh has 2 pieces, of 80 and 80 faces; face 80 is not connected with face 0");
+  expectRefusal(twoOf(sphere()),
+                "the mesh has 2 pieces, of 80 and 80 faces; face 80 is not connected with face 0");
 }
 
 TEST(MeshTopology, PiecesThatMeetInAVertexAreRefused) {

@@ -53,7 +53,7 @@ TEST(Covariance, OfAParticleHeldByTwoSprings) {
   EXPECT_LT((found[2] - expected).norm(), 1e-15);
 }
 
-// Of what is left when the pair as a whole is turned back, both share the error of their angle.
+// When the pair as a whole is turned back, both share the error of their angle.
 TEST(Covariance, OfAPairThatTurnsFreely) {
   SpringLists springs;
   springs.get<AngleSpring>() = {angleSpring(0, 1, kPi / 2)};

@@ -1,4 +1,4 @@
-// What the answer of a relaxation says of what its springs leave open.
+// The answer of a relaxation about the freedom that its springs leave.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -183,7 +183,7 @@ TEST(GlobalSearch, DependsOnTheSeed) {
   EXPECT_TRUE(differs);
 }
 
-// What is lowest already stays where it is, to the last bit.
+// The lowest minimum stays where it is, to the last bit.
 TEST(GlobalSearch, KeepsWhatIsRelaxed) {
   const Rig rig = rigOf(12, 0.5 * kDegree, 5);
   Rig found = rig;

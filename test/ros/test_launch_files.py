@@ -16,7 +16,7 @@ from scenes import particle
 
 LAUNCH = os.path.join(rospkg.RosPack().get_path(PACKAGE), 'launch')
 FILES = {'spherical_springs': (), 'octant': (), 'pan_tilt': (), 'viewing_directions': (),
-         'mesh': ('mesh:=a.obj',), 'host': ('host:=10.0.0.2', 'namespace:=far')}
+         'mesh': ('mesh:=a.obj', 'rviz:=true'), 'host': ('host:=10.0.0.2', 'namespace:=far')}
 ARGUMENTS = {'time_step': 0.5, 'integrator': 'euler', 'publish_rate': 7, 'real_time_factor': 2.5,
              'frame_id': 'globe', 'radius': 3.5, 'threads': 3, 'spring_damping': 'own',
              'max_particles': 100, 'max_springs': 200, 'scene_directory': '/tmp/scenes'}
