@@ -67,8 +67,10 @@ TEST(Options, OfRepairsAndTexturesAreRead) {
   EXPECT_EQ("--fill-holes is '2'; allowed: the number of edges of a hole, 3 or more",
             reasonAgainst({"--fill-holes", "2"}));
   for (const char* text : {"1,2", "0,0,0", "1,2,3,4", "1;2;3", "nan,0,0", "", "1,2,3x"}) {
-    EXPECT_EQ("--pole is '" + std::string(text) + "'; allowed: three numbers X,Y,Z, not all 0",
-              reasonAgainst({"--pole", text}));
+    EXPECT_EQ(reasonAgainst({"--pole", text}),
+              std::string("--pole is '")
+                  .append(text)
+                  .append("'; allowed: three numbers X,Y,Z, not all 0"));
   }
   EXPECT_EQ(
       "--uv-projection is 'mercator'; allowed: longitude-latitude, equal-area-cylinder or "
