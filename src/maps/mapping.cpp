@@ -78,7 +78,6 @@ void Mapping::search(std::optional<Points> start) {
       std::max(vertices_ > kMostCoarsest ? 1. : 2., std::pow(4000. / vertices_, 2));
   std::vector<std::int32_t> sizes = coarsestSizes(vertices_);
   candidates_.reserve(sizes.size() + 1);
-  if (start && tookAsItIs(*start)) return;
   if (start) add(roundedOff(std::move(*start)));
   int tried = 0;
   while (!clock_.hasMap() || (best_.spread > wantedSpread() && clock_.goOn())) {
@@ -99,16 +98,6 @@ void Mapping::search(std::optional<Points> start) {
       break;
     }
   }
-}
-
-/// Takes a start that leaves nothing to be found as it is.
-bool Mapping::tookAsItIs(Points& start) {
-  const double spread = spreadOf(faces_, shares_, start);
-  if (options_.angle_weight > 0 || spread > options_.tolerance) return false;
-  best_ = {std::move(start), spread};
-  tellOfMap(spread);
-  clock_.goOn();
-  return true;
 }
 
 /// Best last.

@@ -33,7 +33,6 @@ class Mapping {
   template <class Work>
   void unlessItEnds(const Work& work);
   void search(std::optional<Points> start);
-  bool tookAsItIs(Points& start);
   void add(Candidate candidate);
   void tellOfMap(double spread);
   std::optional<Points> coarsestMap(const MeshLevel& level);
