@@ -8,7 +8,8 @@ namespace {
 
 std::string coordinates(const Vector3& p) {
   char text[80];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p[0], p[1], p[2]);
+  const Vector3 shown = p.array() + 0.;  // without the sign of zeros
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", shown[0], shown[1], shown[2]);
   return text;
 }
 
