@@ -287,7 +287,7 @@ class TestRefusals(MeshTest):
                 ({'mesh': self.write('two\nlines.obj', vertices, faces[1:])}, r'two\?lines.obj: '),
                 ({'sphere': self.write('finer.obj', *bumpy(2))}, 'faces are not those'),
                 ({'sphere': self.write('reverse.obj', vertices, faces[::-1])}, 'faces are not those'),
-                ({'sphere': self.write('zero.obj', 0 * vertices, faces)}, 'vertex 1 at .* has no direction'),
+                ({'sphere': self.write('zero.obj', 0 * vertices, faces)}, 'vertex 1 at .* no direction'),
                 ({'angle_weight': 'nan'}, 'angle-weight is nan; allowed: 0 to'),
                 ({'output': '/nowhere/x.obj'}, "--output is '/nowhere/x.obj'; allowed: "),
                 ({'colour': 'red'}, "'--colour'"),
