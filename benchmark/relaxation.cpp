@@ -17,6 +17,7 @@
 #include "curvature.h"
 #include "memory_use.h"
 #include "networks.h"
+#include "relaxation/torque_limit.h"
 #include "scene_parts.h"
 #include "spherical_springs/scene_file.h"
 
@@ -85,16 +86,6 @@ System systemOf(const Scene& scene, int threads) {
   System::Options options;
   options.threads = threads;
   return System(scene, options);
-}
-
-double maxTorque(const System& system, const Points& positions) {
-  System::Workspace workspace;
-  system.evaluate(positions, workspace);
-  double largest = 0;
-  for (Eigen::Index i = 0; i < positions.cols(); ++i) {
-    if (!system.pinned(i)) largest = std::max(largest, workspace.torques.col(i).norm());
-  }
-  return largest;
 }
 
 /// Difference of two energies, relative to the greater; 1e-12 of `start` counts as rounding.
@@ -206,13 +197,13 @@ void measureNetwork(const Network& network, const Settings& settings) {
     const double energy = system.potential(ceres.positions).total();
     of_ceres = {text(energy, 7),
                 text(relativeDifference(ours.result.energy_after, energy, energy_before), 2),
-                text(maxTorque(system, ceres.positions), 2), std::to_string(ceres.iterations),
+                text(largestTorque(system, ceres.positions), 2), std::to_string(ceres.iterations),
                 text(ceres.seconds) + (ceres.converged ? "" : " (not converged)")};
   }
   const SparseMatrix hessian = differenceHessian(system, ours.result.positions);
   cells.insert(
       cells.end(),
-      {of_ceres[0], of_ceres[1], text(maxTorque(system, ours.result.positions), 2), of_ceres[2],
+      {of_ceres[0], of_ceres[1], text(largestTorque(system, ours.result.positions), 2), of_ceres[2],
        std::to_string(ours.result.iterations), of_ceres[3], text(ours.seconds), of_ceres[4],
        eigenvalue(eigenvalueRange(system, hessian, ours.result.positions)),
        text(leastDefiniteShift(hessian), 1), ours.result.message});

@@ -111,8 +111,8 @@ void InverseHessian::findOpen(const Points& positions) {
 }
 
 /// Holds as many coordinates of a group as it may turn in ways, those that its rotations move most.
-/// With the open moves projected out, the inverse then is that on their complement: where the
-/// right-hand side has no part along them, the added springs are not strained.
+/// The inverse is then the one on the complement of the open moves: a right-hand side without a
+/// part along them does not strain the added springs.
 void InverseHessian::hold(std::size_t group, TangentEnergy::Hessian& values) const {
   const Eigen::MatrixXd& open = open_[group];
   if (open.cols() == 0) return;

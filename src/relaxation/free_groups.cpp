@@ -19,6 +19,12 @@ Eigen::Matrix3d scatter(const std::vector<std::uint32_t>& particles, const Point
   return sum;
 }
 
+template <class Spring>
+double energyOf(const Spring& spring, const Points& positions) {
+  const double c = condition(spring, System::points(spring, positions)).value;
+  return 0.5 * spring.stiffness * c * c;
+}
+
 /// Whether the `rank` greatest eigenvalues are all that is not small.
 bool hasRank(int rank, const Eigen::Matrix3d& scatter) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, Eigen::EigenvaluesOnly);
@@ -73,16 +79,41 @@ Eigen::VectorXd FreeGroups::energies(const Points& positions) const {
   forEachKind([&](auto kind) {
     const auto& springs = system_.springs<typename decltype(kind)::type>();
     std::vector<double> values(springs.size());
-    parallelFor(springs.size(), system_.threads(), [&](std::ptrdiff_t s) {
-      const double c = condition(springs[s], System::points(springs[s], positions)).value;
-      values[s] = 0.5 * springs[s].stiffness * c * c;
-    });
+    parallelFor(springs.size(), system_.threads(),
+                [&](std::ptrdiff_t s) { values[s] = energyOf(springs[s], positions); });
     for (std::size_t s = 0; s < springs.size(); ++s) {
       const std::uint32_t group = groupOf(springs[s]);
       if (group != kNone) energies[group] += values[s];
     }
   });
   return energies;
+}
+
+FreeGroups::MirrorEnergies FreeGroups::mirrorEnergies(const Points& positions) const {
+  const auto groups = static_cast<Eigen::Index>(count());
+  MirrorEnergies sums{Eigen::VectorXd::Zero(groups), Eigen::VectorXd::Zero(groups)};
+  const Points mirror_image = mirrored(positions);
+  forEachKind([&](auto kind) {
+    using Spring = typename decltype(kind)::type;
+    const auto& springs = system_.springs<Spring>();
+    const auto mayTell = [&](const Spring& spring) {
+      return Spring::kParticles > 2 || system_.pinned(spring.particles[0]) ||
+             system_.pinned(spring.particles[1]);
+    };
+    std::vector<double> here(springs.size(), 0), there(springs.size(), 0);
+    parallelFor(springs.size(), system_.threads(), [&](std::ptrdiff_t s) {
+      if (!mayTell(springs[s])) return;
+      here[s] = energyOf(springs[s], positions);
+      there[s] = energyOf(springs[s], mirror_image);
+    });
+    for (std::size_t s = 0; s < springs.size(); ++s) {
+      const std::uint32_t group = groupOf(springs[s]);
+      if (group == kNone) continue;
+      sums.here[group] += here[s];
+      sums.mirrored[group] += there[s];
+    }
+  });
+  return sums;
 }
 
 Eigen::Matrix3Xd FreeGroups::axes(std::size_t group, const Points& positions) const {
@@ -99,7 +130,7 @@ Eigen::Matrix3Xd FreeGroups::axes(std::size_t group, const Points& positions) co
 std::uint32_t FreeGroups::rotations(std::size_t group, const Points& positions) const {
   const auto count = static_cast<std::uint32_t>(axes(group, positions).cols());
   if (count == 0) return 0;
-  // With one axis, that of the pinned particles.
+  // A single axis is the one that the pinned particles lie on.
   Eigen::Matrix3d sum = scatter(groups_[group].particles, positions);
   if (count == 1) sum += scatter(groups_[group].pins, positions);
   return hasRank(1, sum) ? count - 1 : count;

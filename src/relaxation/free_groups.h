@@ -41,6 +41,15 @@ class FreeGroups {
   /// circle, to within 1e-6 rad: it is its own mirror image then.
   bool isFlat(std::size_t group, const Points& positions) const;
 
+  /// Energies of each group's springs that may tell it from its mirror image [J].
+  struct MirrorEnergies {
+    Eigen::VectorXd here, mirrored;
+  };
+
+  /// Returns the energies of the springs of three particles or more, and of those to pinned ones.
+  /// Two free particles and their mirror image differ by a rotation alone.
+  MirrorEnergies mirrorEnergies(const Points& positions) const;
+
   /// The positions with each group mirrored at a plane through the centre: the one that is nearest
   /// to its pinned particles.
   Points mirrored(Points positions) const;

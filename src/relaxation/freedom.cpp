@@ -25,22 +25,29 @@ Eigen::VectorXd roundingOf(const Eigen::VectorXd& energies, const Eigen::VectorX
   return kShare * energies + kStrain * kStrain * stiffness;
 }
 
+std::vector<bool> mirrorImagesDiffer(const FreeGroups& groups, const Points& positions) {
+  const FreeGroups::MirrorEnergies energies = groups.mirrorEnergies(positions);
+  const Eigen::VectorXd rounding = roundingOf(energies.here, groups.stiffness());
+  std::vector<bool> differ(groups.count());
+  for (std::size_t g = 0; g < differ.size(); ++g) {
+    differ[g] = std::abs(energies.mirrored[g] - energies.here[g]) > rounding[g];
+  }
+  return differ;
+}
+
 void judge(const System& system, RelaxationResult& result) {
   const FreeGroups groups(system);
   const Points& positions = result.positions;
-  const Eigen::VectorXd energies = groups.energies(positions);
-  const Eigen::VectorXd mirrored = groups.energies(groups.mirrored(positions));
-  const Eigen::VectorXd rounding = roundingOf(energies, groups.stiffness());
+  const std::vector<bool> differ = mirrorImagesDiffer(groups, positions);
   result.free_rotations = 0;
   result.mirror_ambiguous = false;
   for (std::size_t g = 0; g < groups.count(); ++g) {
     result.free_rotations += groups.rotations(g, positions);
-    const bool alike = std::abs(mirrored[g] - energies[g]) <= rounding[g];
-    result.mirror_ambiguous = result.mirror_ambiguous || (alike && !groups.isFlat(g, positions));
+    result.mirror_ambiguous =
+        result.mirror_ambiguous || (!differ[g] && !groups.isFlat(g, positions));
   }
   const double stiffness = totalStiffness(system);
-  const double energy = system.potential(positions).total();
-  result.rms_strain = stiffness > 0 ? std::sqrt(2 * energy / stiffness) : 0;
+  result.rms_strain = stiffness > 0 ? std::sqrt(2 * result.energy_after / stiffness) : 0;
 }
 
 }  // namespace spherical_springs::core

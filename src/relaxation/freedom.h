@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
+#include "relaxation/free_groups.h"
 #include "spherical_springs/relaxation.h"
 
 namespace spherical_springs::core {
@@ -11,8 +13,11 @@ namespace spherical_springs::core {
 /// one entry a group.
 Eigen::VectorXd roundingOf(const Eigen::VectorXd& energies, const Eigen::VectorXd& stiffness);
 
-/// Fills in what a result says of the measurements: `free_rotations`, `mirror_ambiguous` and
-/// `rms_strain`, at its positions.
+/// Returns for each group whether its mirror image has another energy.
+std::vector<bool> mirrorImagesDiffer(const FreeGroups& groups, const Points& positions);
+
+/// Fills in `free_rotations`, `mirror_ambiguous` and `rms_strain` of a result, from its positions
+/// and its energy.
 void judge(const System& system, RelaxationResult& result);
 
 }  // namespace spherical_springs::core

@@ -42,7 +42,8 @@ RelaxationResult GlobalSearch::run() {
   best_ = descend(start_, 0, share);
   energies_ = groups_.energies(best_.positions);
   rounding_ = roundingOf(energies_, groups_.stiffness());
-  const bool mirrors = mirrorsDiffer(best_.positions);
+  const std::vector<bool> differ = mirrorImagesDiffer(groups_, best_.positions);
+  const bool mirrors = std::find(differ.begin(), differ.end(), true) != differ.end();
   if (mirrors && !isOver()) consider(descend(groups_.mirrored(best_.positions), share, 0));
   std::uint32_t tried = 0;
   while (tried < options_.starts && !isOver()) {
@@ -128,11 +129,6 @@ double GlobalSearch::consider(const RelaxationResult& found) {
     best_.max_torque = largestTorque(system_, best_.positions);
   }
   return energies.sum();
-}
-
-bool GlobalSearch::mirrorsDiffer(const Points& positions) const {
-  const Eigen::VectorXd mirrored = groups_.energies(groups_.mirrored(positions));
-  return ((mirrored - energies_).array().abs() > rounding_.array()).any();
 }
 
 /// Tells how far the search has come. @return false where that ends it.

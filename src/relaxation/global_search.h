@@ -31,7 +31,6 @@ class GlobalSearch {
   bool sweep(std::uint32_t number, Points& positions);
   RelaxationResult descend(const Points& from, double done, double share);
   double consider(const RelaxationResult& found);
-  bool mirrorsDiffer(const Points& positions) const;
   bool show(const RelaxationResult& best, double fraction);
   RelaxationResult finished(std::uint32_t tried);
 
